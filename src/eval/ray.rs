@@ -81,6 +81,11 @@ const PATIENCE: usize = 1 << 12;
 /// Values nearer to 0, in proportion to the solid's size or to the values about it, may be 0.
 const ROUNDING: f64 = 1e-15;
 
+/// How far from a ray, in proportion to lengths about the solid, others tell whether a face that it
+/// is in is one of the solid, and where about it.
+const BESIDE: f64 = 1e-10;
+const AROUND: [f64; 4] = [0.4, 2.0, 3.6, 5.1];
+
 /// A slope that goes beyond 0 by no more than this, of values on the scale of lengths, is rounding:
 /// a flat piece may be on the way, a crossing and back may not.
 const LEVEL: f64 = 1e-13;
@@ -132,8 +137,38 @@ pub(crate) fn first_hit(
     program: &Program,
     bounds: &Bounds,
     (origin, direction): (DVec3, DVec3),
+    span: [f64; 2],
+    care: Care,
+) -> Option<Hit> {
+    let mut grazes = false;
+    let hit = crossing(program, bounds, (origin, direction), span, care, &mut grazes);
+    if !grazes {
+        return hit;
+    }
+    // In a face that operands share it is inside where all rays about it are.
+    let size = if bounds.is_finite() { bounds.longest_side() } else { 1.0 };
+    let by = BESIDE * (size + origin.abs().max_element());
+    let (a, b) = direction.any_orthonormal_pair();
+    let beside = |turn: f64| {
+        let ray = (origin + by * (turn.cos() * a + turn.sin() * b), direction);
+        crossing(program, bounds, ray, span, care, &mut false)
+    };
+    let around: Option<Vec<Hit>> = AROUND.into_iter().map(beside).collect();
+    let last = around?.into_iter().max_by(|a, b| a.distance.total_cmp(&b.distance))?;
+    match hit {
+        Some(hit) if hit.distance <= last.distance => Some(hit),
+        _ => Some(Hit { point: origin + last.distance * direction, ..last }),
+    }
+}
+
+/// The same, with faces that operands share as outside; and whether the ray is in one for a while.
+fn crossing(
+    program: &Program,
+    bounds: &Bounds,
+    (origin, direction): (DVec3, DVec3),
     [near, far]: [f64; 2],
     care: Care,
+    grazes: &mut bool,
 ) -> Option<Hit> {
     if origin.abs().max_element() > FARTHEST_ORIGIN {
         return None;
@@ -156,6 +191,7 @@ pub(crate) fn first_hit(
     let level = LEVEL * (scale / size).min(1.0);
     let one_signed = |slope: Interval| slope.lo() > -level || slope.hi() < level;
     let is_inside = |value: f64| value > doubt;
+    let is_level = |values: [f64; 2]| values.iter().all(|value| value.abs() <= doubt);
     let inside = values.map(is_inside);
     let mut pieces = Vec::new();
     let mut start = (near, values[0]);
@@ -178,6 +214,7 @@ pub(crate) fn first_hit(
         let is_settled = one_signed(piece.slopes);
         if to - from <= short || is_settled {
             if piece.inside[0] == piece.inside[1] {
+                *grazes |= is_level(piece.values);
                 continue;
             }
             let [from, to] = if is_settled { piece.ends } else { [from.min(to), from.max(to)] };
@@ -212,7 +249,10 @@ pub(crate) fn first_hit(
                     // Between the pieces before and this one, by no more than rounding.
                     Region::Inside if !inside[0] => return Some(hit_at(&piece.program, at(t0), t0)),
                     Region::Outside if inside[0] => return Some(hit_at(&piece.program, at(t0), t0)),
-                    Region::Inside | Region::Outside => continue,
+                    Region::Inside | Region::Outside => {
+                        *grazes |= is_level(piece.values);
+                        continue;
+                    }
                 };
                 // Of the same sign everywhere in the piece, not of the same value: so an end in a
                 // face, which counts as outside, may be well inside what is left of the program.

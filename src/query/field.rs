@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::inside::is_inside;
+use super::inside::{is_inside, joint};
 use super::nearest::nearest;
 use crate::distance::{compiled, surface_of};
 use crate::eval::{Care, Evaluator, Hit, Owner, Program, Region, Tape, first_hit, limited};
@@ -168,7 +168,7 @@ impl Solid {
         if direction == DVec3::ZERO || !origin.is_finite() {
             return Ok(None);
         }
-        let whole = [0.0, f64::INFINITY];
+        let whole = [joint(&programs, origin), f64::INFINITY];
         Ok(first_hit(&programs.surface, &programs.bounds, (origin, direction), whole, Care::Full))
     }
 

@@ -51,6 +51,15 @@ pub(super) fn is_inside(programs: &Compiled, p: DVec3) -> bool {
     value > -ROUNDING * scale && is_surrounded(program, p, scale)
 }
 
+/// How long a ray is in what counts as inside where it starts in a face that operands share; else 0.
+pub(super) fn joint(programs: &Compiled, origin: DVec3) -> f64 {
+    if programs.surface.value(origin) > 0.0 || !is_inside(programs, origin) {
+        return 0.0;
+    }
+    let size = if programs.bounds.is_finite() { programs.bounds.longest_side() } else { 1.0 };
+    BESIDE * (size + origin.abs().max_element())
+}
+
 /// Whether inside is all around a point on the surface of the program's operands.
 fn is_surrounded(program: &Program, p: DVec3, scale: f64) -> bool {
     let by = BESIDE * scale;

@@ -14,6 +14,7 @@
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
+use super::contour::aside;
 use super::settings::{RenderError, check_memory, check_size, setting};
 use crate::distance::compiled;
 use crate::eval::{Evaluator, Program, Tape};
@@ -122,19 +123,6 @@ impl Slice {
         self.region
     }
 
-    /// Values of a program at the points of a grid, row by row.
-    pub(super) fn sampled(&self, program: &Program, columns: &[f64], rows: &[f64]) -> Vec<f64> {
-        let tape = Tape::new(program, &Bounds::new(glam::DVec3::ZERO, glam::DVec3::ZERO));
-        let mut values = vec![0.0; columns.len() * rows.len()];
-        values.par_chunks_mut(columns.len()).zip(rows).for_each_init(Evaluator::new, |evaluator, (values, v)| {
-            let at = |axis: usize| -> Vec<f64> {
-                columns.iter().map(|u| self.plane.point(DVec2::new(*u, *v))[axis]).collect()
-            };
-            evaluator.shortest_values_f64(&tape, [&at(0), &at(1), &at(2)], values);
-        });
-        values
-    }
-
     /// The height of a picture `width` pixels wide.
     fn height(&self, width: u32) -> f64 {
         let size = self.region.max - self.region.min;
@@ -148,6 +136,11 @@ impl Slice {
     /// If the width, or the height that follows from it, is not from 1 to 65 535, or both make more
     /// pixels than fit into memory.
     pub fn values(&self, width: u32) -> Result<Image<f64>, RenderError> {
+        self.values_on(&self.plane, width)
+    }
+
+    /// The same on a plane beside the slice's.
+    fn values_on(&self, plane: &Plane, width: u32) -> Result<Image<f64>, RenderError> {
         let height = self.height(width).min(f64::from(u32::MAX)) as u32;
         check_size(width, height)?;
         check_memory(width, height)?;
@@ -155,10 +148,11 @@ impl Slice {
         let middle = |i: u32, count: u32| (f64::from(i) + 0.5) / f64::from(count);
         let columns: Vec<f64> = (0..width).map(|i| min.x + (max.x - min.x) * middle(i, width)).collect();
         let rows: Vec<f64> = (0..height).map(|j| max.y - (max.y - min.y) * middle(j, height)).collect();
-        Ok(Image::new(width, height, self.sampled(&self.field, &columns, &rows))?)
+        Ok(Image::new(width, height, sampled(&self.field, plane, &columns, &rows))?)
     }
 
-    /// The field as a picture: inside and outside tinted, isolines, and the surface as a line.
+    /// The field as a picture: inside and outside tinted, isolines, and the surface as a line. Where
+    /// a face lies in the plane, what is just above it counts, as [`Side::Above`](crate::Side::Above) does for contours.
     ///
     /// # Errors
     /// If a setting is out of its range.
@@ -168,7 +162,8 @@ impl Slice {
         {
             return Err(setting("isolines", step, "finite and above 0"));
         }
-        let values = self.values(settings.width)?;
+        let above = self.plane.moved_by(aside(&self.plane, self.region, 0.0));
+        let values = self.values_on(&above, settings.width)?;
         let (width, height) = (values.width() as usize, values.height() as usize);
         let v = values.pixels();
         let size = (self.region.max - self.region.min).max_element();
@@ -215,6 +210,18 @@ impl Slice {
             .collect();
         Ok(Image::new(values.width(), values.height(), pixels)?)
     }
+}
+
+/// Values of a program at the points of a grid of a plane, row by row.
+fn sampled(program: &Program, plane: &Plane, columns: &[f64], rows: &[f64]) -> Vec<f64> {
+    let tape = Tape::new(program, &Bounds::new(glam::DVec3::ZERO, glam::DVec3::ZERO));
+    let mut values = vec![0.0; columns.len() * rows.len()];
+    values.par_chunks_mut(columns.len()).zip(rows).for_each_init(Evaluator::new, |evaluator, (values, v)| {
+        let points: Vec<glam::DVec3> = columns.iter().map(|u| plane.point(DVec2::new(*u, *v))).collect();
+        let at = |axis: usize| -> Vec<f64> { points.iter().map(|p| p[axis]).collect() };
+        evaluator.shortest_values_f64(&tape, [&at(0), &at(1), &at(2)], values);
+    });
+    values
 }
 
 /// The rectangle of a plane that a box is seen in, with a small margin.

@@ -37,7 +37,7 @@ impl Solid {
         Cylinder { radius, height }.into()
     }
 
-    /// A [`HalfSpace`]: all points p with `normal·p ≤ offset`, for a unit normal.
+    /// A [`HalfSpace`]: all points p with `n·p ≤ offset`, n the normal made a unit vector.
     #[must_use]
     pub fn half_space(normal: impl Into<DVec3>, offset: f64) -> Solid {
         HalfSpace { normal: normal.into(), offset }.into()

@@ -148,6 +148,9 @@ fn elongation_is_exact_where_the_leaf_is() {
         let p = random.vector(-4.0, 4.0);
         near(value(&solid, p), 0.75 - (p - p.clamp(-half, half)).length(), 1e-13);
     }
+    // In the planes across which nothing is inserted slopes are those of the leaf.
+    let long = Solid::sphere(1.0).translate([0.0, 0.6, 0.0]).elongate([1.0, 0.0, 0.0]);
+    near_point(long.gradient([1.3, 0.0, 0.0]).unwrap(), DVec3::new(-0.8, 0.6, 0.0), 1e-12);
     let halves = block().translate(DVec3::Y * 3.0).elongate(DVec3::splat(2.0));
     check_narrowing(&mut random, &halves, 40);
     assert!(value(&halves, DVec3::new(0.9, 4.0, 0.9)) > 0.0 && value(&halves, DVec3::Y * 3.0) < 0.0);

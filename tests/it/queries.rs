@@ -428,6 +428,25 @@ fn a_joint_is_inside_and_no_surface() {
         assert!((near.distance(turned([1.0, 2.0, 7.0])) - 8.0).abs() < 1e-6, "{turn}: {near}");
         let hit = tower.raycast(turned([1.0, 2.0, -3.0]), DVec3::Z).unwrap().unwrap();
         assert!((hit.distance - 18.0).abs() < 1e-9, "{turn}: {hit:?}");
+        // Rays within the joint: from beyond, from its middle, and out of it; one in the upper face
+        // touches it only.
+        let scene = tower.scene().unwrap();
+        for (from, way, far) in [
+            ([-30.0, 0.5, 5.0], [1.0, 0.0, 0.0], 20.0),
+            ([30.0, -30.0, 5.0], [-0.6, 0.8, 0.0], 200.0 / 6.0),
+            ([1.0, 0.5, 5.0], [1.0, 0.0, 0.0], 9.0),
+            ([1.0, 0.5, 5.0], [0.0, 0.0, 1.0], 10.0),
+        ] {
+            let (from, way) = (turned(from), turned(way));
+            let hit = tower.raycast(from, way).unwrap().unwrap_or_else(|| panic!("{turn}: {from} along {way} misses"));
+            assert!((hit.distance - far).abs() < 1e-6, "{turn}: {hit:?} for {far}");
+            if !tower.contains(from).unwrap() {
+                let seen =
+                    scene.first_hit(from, way).unwrap_or_else(|| panic!("{turn}: {from} along {way} is not seen"));
+                assert!((seen.distance - far).abs() < 1e-4, "{turn}: {seen:?} for {far}");
+            }
+        }
+        assert_eq!(tower.raycast(turned([-30.0, 0.5, 15.0]), turned([1.0, 0.0, 0.0])).unwrap(), None);
     }
     // Three of four blocks about an edge: the edge is on the surface, with all four it is inside.
     let block = |x: f64, y: f64| Solid::cuboid([2.0, 2.0, 2.0]).translate([x, y, 0.0]);

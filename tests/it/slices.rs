@@ -31,6 +31,20 @@ fn picture_of_a_slice() {
 }
 
 #[test]
+fn pictures_of_joints_are_of_what_is_above() {
+    let brick = Solid::cuboid([20.0, 20.0, 10.0]);
+    let tower = brick.clone() | Solid::cylinder(5.0, 10.0).translate([0.0, 0.0, 10.0]);
+    let slice = tower.slice(&Plane::xy(5.0)).unwrap();
+    let picture =
+        slice.picture(&SliceSettings { width: 80, isolines: Isolines::None, ..SliceSettings::default() }).unwrap();
+    let at = |x: u32, y: u32| picture.pixels()[(y * picture.width() + x) as usize];
+    // The post's disc is light and warm, what is about it light and cool.
+    let (disc, about) = (at(40, 40), at(40, 15));
+    assert!(disc[0] > 150 && disc[0] > disc[2], "{disc:?}");
+    assert!(about[0] > 150 && about[0] < about[2], "{about:?}");
+}
+
+#[test]
 fn contours_are_closed_oriented_and_on_the_surface() {
     let solid = ring();
     let plane = Plane::xy(0.1);

@@ -21,6 +21,7 @@ use rvachev_num::Meter;
 
 use self::chain::Chains;
 pub use self::section::Side;
+pub(super) use self::section::aside;
 use self::section::{Filling, Section};
 use self::square::Root;
 use self::tree::Tree;
@@ -67,8 +68,9 @@ impl Slice {
     /// have one contour about them.
     ///
     /// Nothing that is wider than the tolerance is missed, and what is narrower is told
-    /// ([`Contours::unresolved`]); of lengths (offsets, shells, fillets) nothing that is wider than
-    /// a 256th of the region.
+    /// ([`Contours::unresolved`]). Where slopes have no bound (lengths as offsets, shells and
+    /// fillets; displacement and Ricci's blend; leaves at their pinched points; some users' fields)
+    /// nothing is missed that is wider than a 256th of the region.
     ///
     /// # Errors
     /// If the tolerance is not above 0.

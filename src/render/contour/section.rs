@@ -16,6 +16,12 @@ use rvachev_field::Zone;
 /// near.
 const EPSILON: f64 = 1.0 / (1u64 << 37) as f64;
 
+/// How far above a plane, and those up to a height above it, it is to be looked for what counts as
+/// above it.
+pub(in super::super) fn aside(plane: &Plane, border: PlaneBounds, height: f64) -> f64 {
+    EPSILON * ((border.max - border.min).max_element() + plane.origin().abs().max_element() + height)
+}
+
 /// Squares that are no larger, in the smallest squares, are looked at by samples where ranges of
 /// slopes tell little: a 256th of the first.
 const SAMPLED: u32 = 1 << (DEEPEST - 8);
@@ -67,10 +73,9 @@ impl Section {
         settings: &ContourSettings,
         border: PlaneBounds,
     ) -> Vec<Section> {
-        let size = (border.max - border.min).max_element();
         let farthest = heights.iter().fold(0.0, |farthest: f64, height| farthest.max(height.abs()));
         // One for all: the planes of a stack stay as far apart as they are.
-        let epsilon = EPSILON * (size + plane.origin().abs().max_element() + farthest);
+        let epsilon = aside(plane, border, farthest);
         let aside = match settings.side {
             Side::Above => epsilon,
             Side::Below => -epsilon,

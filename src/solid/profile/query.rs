@@ -32,7 +32,8 @@ impl Profile {
         self.0.values(&points)
     }
 
-    /// Whether a point is inside: the value is positive.
+    /// Whether a point is inside: the value is positive, or, in a side that parts share, inside is
+    /// all around.
     ///
     /// # Errors
     /// What is wrong with the profile: see [`SolidError`].

@@ -11,8 +11,8 @@
 
 use glam::DVec3;
 
-use super::Warp;
-use crate::{Angle, Bounds, Euclid, Real};
+use super::{Warp, meets_cut};
+use crate::{Angle, Bounds, Dual, Euclid, Interval, Real};
 use crate::{ParamError, check};
 use rvachev_num::figures;
 
@@ -66,6 +66,17 @@ impl Warp for Bend {
         let r = (big_r * 2.0 - bow * k) / (h + 1.0);
         let shift = r - big_r;
         [shift.scale_add(cos, x), shift.scale_add(sin, y), opposite.atan2(adjacent) * (1.0 / k)]
+    }
+
+    fn slopes(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3] {
+        let mut image = self.inverse(p);
+        let (sin, cos) = self.angle.radians().sin_cos();
+        let [x, y, z] = p.map(Dual::value);
+        let k = self.curvature;
+        if meets_cut(z * k, (x * cos + y * sin).scale_add(-k, Interval::point(1.0))) {
+            image[2].d = [Interval::ALL; 3];
+        }
+        image
     }
 
     #[cfg(test)]

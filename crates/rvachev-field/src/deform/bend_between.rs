@@ -28,7 +28,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
-use super::{Bend, Warp};
+use super::{Bend, Warp, meets_cut};
 use crate::{Angle, Bounds, Dual, Interval, Real};
 use crate::{ParamError, check};
 use rvachev_num::{figures, rad};
@@ -152,7 +152,13 @@ impl Warp for BendBetween {
             let [left, _, up] = bend.inverse([middle[0], z.lift(0.0), middle[1]]);
             [left, up + z.lift(0.5 * (self.from + self.to))]
         } else {
-            return self.inverse([x, y, z]);
+            let image = self.inverse([x, y, z]);
+            let [left, up] = middle.map(Dual::value);
+            let k = self.curvature();
+            return match meets_cut(up * k, left.scale_add(-k, Interval::point(1.0))) {
+                true => image.map(|side| Dual::new(side.value(), [Interval::ALL; 3])),
+                false => image,
+            };
         };
         let far = across.value().magnitude() + z.value().magnitude() + self.from.abs() + self.to.abs();
         let rounding = Dual::constant(Interval::around(0.0, 16.0 * f64::EPSILON * far));

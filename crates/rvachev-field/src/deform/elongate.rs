@@ -32,6 +32,10 @@ impl Elongate {
 
 #[inline(always)]
 fn closed<R: Real>(x: R, half: f64) -> R {
+    // At 0 both terms would have the slope of x.
+    if half == 0.0 {
+        return x;
+    }
     let zero = x.lift(0.0);
     (x - half).max(zero) + (x + half).min(zero)
 }

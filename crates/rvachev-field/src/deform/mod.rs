@@ -105,6 +105,11 @@ pub trait Warp: Debug + Clone + Send + Sync + 'static {
     }
 }
 
+/// Whether `atan2(opposite, adjacent)` jumps by a whole turn, which its slopes say nothing of.
+fn meets_cut(opposite: Interval, adjacent: Interval) -> bool {
+    opposite.contains(0.0) && adjacent.lo() <= 0.0
+}
+
 /// The affine map of a fold over a region, and a second one if the region lies across an
 /// edge.
 pub type Branches = (DAffine3, Option<DAffine3>);
