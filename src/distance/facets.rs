@@ -62,6 +62,28 @@ impl Facets {
         facets
     }
 
+    /// Leaves out triangles on the faces of a box that cuts the surface off: those that are nearer
+    /// to a face than to the surface. Where both meet at a small angle not all of their corners are
+    /// on the face.
+    pub(super) fn leave_faces(&mut self, of: &Bounds, slopes: &Slopes<'_>, run: &Run) -> Result<(), Cancelled> {
+        let gap = |p: DVec3| (p - of.min).abs().min((of.max - p).abs()).min_element();
+        let middle = |t: usize| {
+            let [a, b, c] = self.triangles[t].map(|v| self.positions[v as usize]);
+            ((a + b + c) / 3.0, a.distance(b).max(b.distance(c)).max(c.distance(a)))
+        };
+        let near = (0..self.triangles.len()).map(|t| (t, middle(t))).filter(|(_, (p, size))| gap(*p) < *size);
+        let (near, middles): (Vec<usize>, Vec<DVec3>) = near.map(|(t, (p, _))| (t, p)).unzip();
+        let mut on_face = vec![false; self.triangles.len()];
+        for ((t, p), slope) in near.iter().zip(&middles).zip(slopes.at(&middles, run)?) {
+            on_face[*t] = gap(*p) < slope.distance();
+        }
+        let mut other = on_face.iter().map(|on_face| !on_face);
+        self.triangles.retain(|_| other.next().unwrap_or(true));
+        let mut other = on_face.iter().map(|on_face| !on_face);
+        self.normals.retain(|_| other.next().unwrap_or(true));
+        Ok(())
+    }
+
     /// The area of all triangles.
     pub(super) fn area(&self) -> f64 {
         let of_triangle = |triangle: &[u32; 3]| {

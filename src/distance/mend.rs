@@ -7,12 +7,14 @@
 //!           +---+
 //! ```
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::compiled_with;
 use super::facets::{Facets, sharp};
-use super::quilt::{Care, Quilt, Spot};
+use super::quilt::{Care, GROSS, Quilt, Spot};
 use crate::eval::{Region, as_leaf};
 use crate::mesh::Slopes;
 use crate::solid::Node;
@@ -32,6 +34,10 @@ const NEAR: f64 = 1.0;
 
 /// What is within a box, in parts of its longest side, is mended.
 const MARGIN: f64 = 0.3;
+
+/// The parts of large groups, in parts of the longest box that is meshed: boxes about spots reach
+/// beyond them.
+const PART: f64 = 0.6;
 
 /// A mesh that patches were made of: the size of its cells, and how often its spots may be meshed
 /// anew.
@@ -56,12 +62,18 @@ pub(super) fn mend(
 fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<(), Cancelled> {
     let Cells { size, depth } = cells;
     let spots = std::mem::take(&mut quilt.spots);
-    let groups = if depth == 0 { Vec::new() } else { groups(&spots, tolerance) };
+    let worst = |numbers: &[usize]| numbers.iter().map(|n| spots[*n].off).fold(0.0, f64::max);
+    let in_parts = |group: Group| match worst(&group.1) > GROSS * tolerance {
+        true => parted(group, &spots, size, tolerance),
+        false => vec![group],
+    };
+    let found = if depth == 0 { Vec::new() } else { groups(&spots, tolerance) };
+    let groups: Vec<Group> = found.into_iter().flat_map(in_parts).collect();
     if groups.is_empty() || groups.len() > BOXES {
         quilt.take_spots(spots);
         return Ok(());
     }
-    let mended = |(bounds, numbers): &(Bounds, Vec<usize>)| {
+    let mended = |(bounds, numbers): &Group| {
         run.check()?;
         // In cells that are no smaller nothing would be seen that was not.
         let cell = bounds.longest_side() / CELLS;
@@ -71,12 +83,13 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
         let Some(mut part) = anew(slopes, bounds, tolerance, run)? else { return Ok(None) };
         mend_of(Cells { size: cell, depth: depth - 1 }, &mut part, slopes, tolerance, run)?;
         let own: Vec<&Spot> = numbers.iter().map(|n| &spots[*n]).collect();
+        part.keep_near(&own);
         Ok(covers(&part, &own, slopes, NEAR * cell, run)?.then_some(part))
     };
     let found = groups.par_iter().map(mended).collect::<Result<Vec<Option<Quilt>>, Cancelled>>()?;
+    let worst: Vec<f64> = groups.iter().map(|(_, numbers)| worst(numbers)).collect();
     let mut spots: Vec<Option<Spot>> = spots.into_iter().map(Some).collect();
-    for ((_, numbers), part) in groups.iter().zip(found) {
-        let worst = numbers.iter().filter_map(|n| spots[*n].as_ref()).map(|spot| spot.off).fold(0.0, f64::max);
+    for (((_, numbers), part), worst) in groups.iter().zip(found).zip(worst) {
         match part {
             Some(part) if part.error < worst => quilt.take_all(part),
             _ => quilt.take_spots(numbers.iter().filter_map(|n| spots[*n].take()).collect()),
@@ -85,15 +98,40 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
     Ok(())
 }
 
+/// A box, and the numbers of the spots that it is about.
+type Group = (Bounds, Vec<usize>);
+
+/// The box about a spot in which it is mended.
+fn around(spot: &Spot, tolerance: f64) -> Bounds {
+    spot.near(tolerance).inflate(MARGIN * spot.patch.bounds().longest_side())
+}
+
+/// A group in parts that are small enough for cells of half the size. Along a crease spots are
+/// beside each other from end to end, and the box about all of them holds much that is none.
+///
+/// Boxes of neighbouring parts overlap, and so do the patches that are found in them: each part
+/// holds all of the surface in its box, so nothing gapes between them, whatever their cells are.
+fn parted((bounds, numbers): Group, spots: &[Spot], size: f64, tolerance: f64) -> Vec<Group> {
+    let longest = 0.5 * CELLS * size;
+    if bounds.longest_side() <= longest {
+        return vec![(bounds, numbers)];
+    }
+    let mut parts: BTreeMap<[u64; 3], Group> = BTreeMap::new();
+    for number in numbers {
+        let own = around(&spots[number], tolerance);
+        let place = ((own.center() - bounds.min) / (PART * longest)).to_array().map(|at| at as u64);
+        let (part, numbers) = parts.entry(place).or_insert((Bounds::EMPTY, Vec::new()));
+        *part = part.union(&own);
+        numbers.push(number);
+    }
+    parts.into_values().collect()
+}
+
 /// Boxes about spots, apart from each other, and the numbers of the spots in each.
-fn groups(spots: &[Spot], tolerance: f64) -> Vec<(Bounds, Vec<usize>)> {
-    let around = |spot: &Spot| {
-        let bounds = spot.patch.bounds();
-        bounds.inflate(MARGIN * bounds.longest_side() + 2.0 * spot.off + 8.0 * tolerance)
-    };
-    let mut groups: Vec<(Bounds, Vec<usize>)> = Vec::new();
+fn groups(spots: &[Spot], tolerance: f64) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
     for (number, spot) in spots.iter().enumerate() {
-        let (mut bounds, mut numbers) = (around(spot), vec![number]);
+        let (mut bounds, mut numbers) = (around(spot, tolerance), vec![number]);
         while let Some(at) = groups.iter().position(|(other, _)| other.intersects(&bounds)) {
             let (other, mut others) = groups.swap_remove(at);
             bounds = bounds.union(&other);
@@ -139,8 +177,9 @@ fn anew(slopes: &Slopes<'_>, bounds: &Bounds, tolerance: f64, run: &Run) -> Resu
         let at = |axis: usize, side: f64| (p[axis] - side).abs() < 1e-3 * cell;
         (0..3).any(|axis| at(axis, bounds.min[axis]) || at(axis, bounds.max[axis]))
     };
-    let facets = Facets::new(&mesh, |corners| !corners.iter().all(is_on));
+    let mut facets = Facets::new(&mesh, |corners| !corners.iter().all(is_on));
     let slopes = Slopes { program: &program, precision: slopes.precision };
+    facets.leave_faces(bounds, &slopes, &alone)?;
     Quilt::new(facets, &slopes, Care { depth: SPLITS, ..Care::new(tolerance) }, &alone)
 }
 

@@ -55,6 +55,12 @@ const GAIN: f64 = 0.8;
 /// Patches that are farther off than so many tolerances are to be mended.
 const FAR: f64 = 3.0;
 
+/// A surface is not done while a patch is off by so many.
+pub(super) const GROSS: f64 = 8.0;
+
+/// The surface of a spot is looked for so many tolerances beside it at least.
+const BESIDE: f64 = 8.0;
+
 /// Patches that are farther off than this part of their width are left out.
 const ASTRAY: f64 = 0.4;
 
@@ -86,6 +92,13 @@ pub(super) struct Quilt {
 pub(super) struct Spot {
     pub(super) patch: Patch,
     pub(super) off: f64,
+}
+
+impl Spot {
+    /// The box that the surface is in which the patch is to be on, within a tolerance.
+    pub(super) fn near(&self, tolerance: f64) -> Bounds {
+        self.patch.bounds().inflate(2.0 * self.off + BESIDE * tolerance)
+    }
 }
 
 /// How far a patch is off.
@@ -221,6 +234,19 @@ impl Quilt {
     /// Takes patches as they are, however far off.
     pub(super) fn take_spots(&mut self, spots: Vec<Spot>) {
         spots.into_iter().for_each(|spot| self.take(spot.patch, spot.off));
+    }
+
+    /// Leaves out patches that are not near any of these spots, as far as spots may be off.
+    pub(super) fn keep_near(&mut self, spots: &[&Spot]) {
+        let near: Vec<Bounds> = spots.iter().map(|spot| spot.near(self.tolerance)).collect();
+        let mut area = self.area;
+        self.patches.retain(|patch| {
+            let own = patch.bounds();
+            let is_near = near.iter().any(|near| near.intersects(&own));
+            area -= if is_near { 0.0 } else { area_of(patch) };
+            is_near
+        });
+        self.area = area;
     }
 
     /// Takes all patches of another one.

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::compiled_with;
 use super::facets::{Facets, sharp};
 use super::mend::mend;
-use super::quilt::{Care, Quilt};
+use super::quilt::{Care, GROSS, Quilt};
 use super::sheets::cover;
 use crate::error::MeshingError;
 use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, REACH, Surface, Wanted};
@@ -40,10 +40,9 @@ const ALONG_BEND: f64 = 1.25;
 const CELLS: f64 = 4e4;
 const CELLS_A_LEAF: f64 = 500.0;
 
-/// Cells are halved while more than this part of the surface is off, or a patch by so many
+/// Cells are halved while more than this part of the surface is off, or a patch by [`GROSS`]
 /// tolerances.
 const FEW: f64 = 1e-4;
-const FAR: f64 = 8.0;
 
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;
@@ -104,11 +103,11 @@ impl DistanceSource for FromMeshes {
                     let Shown { mesh, hidden } = shown(&programs.surface, bounds, cell, &to_mesh)?;
                     (Facets::new(&mesh, |corners| meets(corners, &near)), hidden)
                 }
-                None => part(solid, bounds, [whole, near], cell, &to_mesh)?,
+                None => part((solid, &slopes), bounds, [whole, near], cell, &to_mesh)?,
                 Some(axis) => {
                     let mut wall = bounds;
                     (wall.min[axis], wall.max[axis]) = (-1.5 * cell, 1.5 * cell);
-                    part(solid, wall, [whole, near], cell, &to_mesh)?
+                    part((solid, &slopes), wall, [whole, near], cell, &to_mesh)?
                 }
             };
             hidden.retain(|hidden| hidden.cell.intersects(&near));
@@ -119,7 +118,7 @@ impl DistanceSource for FromMeshes {
             if !is_last && best.is_none() {
                 care.patience = PATIENCE;
             }
-            let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= FAR * tolerance;
+            let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= GROSS * tolerance;
             let mut is_enough = false;
             if let Some(mut quilt) = Quilt::new(facets, &slopes, care, &to_sew)? {
                 mend(&mut quilt, &slopes, cell, tolerance, &to_sew)?;
@@ -218,7 +217,7 @@ fn meets(corners: &[DVec3; 3], bounds: &Bounds) -> bool {
 /// The surface of a solid within a box, without the faces of the box and what is not near, and the
 /// cells that may hide some of it.
 fn part(
-    solid: &Solid,
+    (solid, slopes): (&Solid, &Slopes<'_>),
     clip: Bounds,
     [whole, near]: [Bounds; 2],
     cell: f64,
@@ -242,5 +241,10 @@ fn part(
                 || clip.max[axis] < whole.max[axis] && on(axis, clip.max[axis])
         })
     };
-    Ok((Facets::new(&mesh, |corners| !is_cap(corners) && meets(corners, &near)), hidden))
+    let mut facets = Facets::new(&mesh, |corners| !is_cap(corners) && meets(corners, &near));
+    // The faces that cut it off.
+    let low = DVec3::select(clip.min.cmpgt(whole.min), clip.min, DVec3::NEG_INFINITY);
+    let high = DVec3::select(clip.max.cmplt(whole.max), clip.max, DVec3::INFINITY);
+    facets.leave_faces(&Bounds::new(low, high), slopes, run)?;
+    Ok((facets, hidden))
 }

@@ -35,6 +35,51 @@ fn a_joint_face_to_face_hides_nothing() {
     assert!(patches.len() < 10_000, "{} patches of flat faces", patches.len());
 }
 
+/// Boxes that cut a slab off at all angles: of their own faces nothing is left, and of the slab's
+/// nothing is missing.
+#[test]
+fn faces_that_cut_a_surface_off_are_left_out() {
+    const CELL: f64 = 0.25;
+    let box_ = Bounds::new(DVec3::splat(-1.0), DVec3::splat(1.0));
+    let run = Run::default();
+    let mut left = 0;
+    for turn in [0.3, 1.0, 3.0, 17.0, 44.9] {
+        let slab = Solid::slab(DVec3::Z, 0.6).rotate_x(deg(turn)).rotate_y(deg(0.7 * turn)).translate([0.0, 0.1, 0.72]);
+        let part = compiled(&(&slab & Solid::cuboid([2.0; 3]))).unwrap();
+        let mesh = sharp(&part.surface, box_, CELL, &run).unwrap();
+        let of_slab = compiled(&slab).unwrap();
+        let slopes = Slopes { program: &of_slab.surface, precision: 1e-4 };
+        let is_on = |p: &DVec3| p.abs().max_element() > 1.0 - 1e-3 * CELL;
+        let mut facets = Facets::new(&mesh, |corners| !corners.iter().all(is_on));
+        left += facets.triangles.len();
+        facets.leave_faces(&box_, &slopes, &run).unwrap();
+        left -= facets.triangles.len();
+        for triangle in &facets.triangles {
+            let middle = triangle.map(|v| facets.positions[v as usize]).iter().sum::<DVec3>() / 3.0;
+            let off = slab.value(middle).unwrap().abs();
+            // Where two faces of the box meet the slab, a corner may be cut off.
+            assert!(off < 0.2 * CELL, "{turn}: {off} off the slab at {middle}");
+        }
+        // The area of the slab's faces in the box, by their intersection with a grid of lines.
+        let count = 400;
+        let at = |i: i32| (f64::from(i) + 0.5) * 2.0 / f64::from(count) - 1.0;
+        let lines = (0..count * count).map(|n| (at(n / count), at(n % count)));
+        let normal = glam::DMat3::from_rotation_y((0.7 * turn).to_radians())
+            * glam::DMat3::from_rotation_x(turn.to_radians())
+            * DVec3::Z;
+        let crossed = |(x, y): (f64, f64)| {
+            [-0.3, 0.3]
+                .map(|side| (side + normal.dot(DVec3::new(-x, 0.1 - y, 0.72))) / normal.z)
+                .into_iter()
+                .filter(|z| z.abs() < 1.0)
+                .count()
+        };
+        let want = lines.map(crossed).sum::<usize>() as f64 * (2.0 / f64::from(count)).powi(2) / normal.z;
+        assert!((facets.area() - want).abs() < 0.03 * want, "{turn}: area {} for {want}", facets.area());
+    }
+    assert!(left > 0, "no box had faces that corners do not tell");
+}
+
 #[test]
 fn plots_are_told_of_what_is_beyond_their_sides() {
     let solid = holed();
