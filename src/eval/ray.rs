@@ -191,7 +191,7 @@ fn crossing(
     let level = LEVEL * (scale / size).min(1.0);
     let one_signed = |slope: Interval| slope.lo() > -level || slope.hi() < level;
     let is_inside = |value: f64| value > doubt;
-    let is_level = |values: [f64; 2]| values.iter().all(|value| value.abs() <= doubt);
+    let is_level = |values: [f64; 2]| values.iter().any(|value| value.abs() <= doubt);
     let inside = values.map(is_inside);
     let mut pieces = Vec::new();
     let mut start = (near, values[0]);
