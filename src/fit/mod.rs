@@ -128,9 +128,11 @@
 //! # Registration
 //!
 //! From 24 rotations of the principal axes of the dense points, Gauss–Newton steps on f/|∇f| with
-//! weights whose width falls from 0.6 of the size, the last of them on the distance; and from
-//! random poses, where that leaves more noise than the scan's neighbourhoods have. Of 60 random
-//! parts (a block with three pins) in random poses are found:
+//! weights whose width falls from 0.6 of the size. The last of them are on the distance to the foot
+//! of each point: the true one where the solid's value is the distance, elsewhere where Newton's
+//! steps lead, which is exact near the surface. Then from random poses, where that leaves more noise
+//! than the scan's neighbourhoods have. Of 60 random parts (a block with three pins) in random poses
+//! are found:
 //!
 //! | scan | found | wrong without saying so |
 //! |---|---|---|
@@ -175,6 +177,7 @@ mod kernel;
 mod kernel_tests;
 mod linear;
 mod local;
+mod lonely;
 mod mixture;
 mod paper;
 mod part;
