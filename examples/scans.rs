@@ -8,10 +8,9 @@
 //! Points are on the left, or above; what was found in them is beside, or below.
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use glam::{DVec3, dvec3};
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{Rgb, RgbImage, imageops};
 use rvachev::fit::{Fit, FitError, FitSettings, Shape, deformed, superellipsoid, supershape};
 use rvachev::surface::ParametricSurface;
@@ -19,6 +18,9 @@ use rvachev::{
     Background, Camera, CellSize, Gielis, MeshSettings, PointCloud, RenderSettings, Solid, Superellipsoid, Supershape,
     deg,
 };
+
+#[allow(dead_code, reason = "panels are of points as well, and as large as each other")]
+mod page;
 
 const GREY: [u8; 3] = [140, 140, 138];
 const BLUE: [u8; 3] = [112, 150, 186];
@@ -113,13 +115,6 @@ fn laid(rows: &[Vec<RgbImage>]) -> RgbImage {
     picture
 }
 
-fn save(picture: &RgbImage, path: &Path) -> Result<(), Box<dyn Error>> {
-    let file = std::io::BufWriter::new(std::fs::File::create(path)?);
-    picture.write_with_encoder(PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive))?;
-    println!("{}", path.display());
-    Ok(())
-}
-
 fn looking_at(solid: &Solid) -> Result<Camera, Box<dyn Error>> {
     Ok(Camera::framing(&solid.bounds()?))
 }
@@ -202,7 +197,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     type Scene = (&'static str, fn() -> Result<RgbImage, Box<dyn Error>>);
     let scenes: [Scene; 3] = [("strewn", strewn), ("kinds", kinds), ("depth", depth)];
     for (name, scene) in scenes {
-        save(&scene()?, &folder.join(name).with_extension("png"))?;
+        page::save(&scene()?, &folder.join(name).with_extension("png"))?;
     }
     Ok(())
 }

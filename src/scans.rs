@@ -124,17 +124,17 @@
 //! | condition | here | EMS, published | ms, published |
 //! |---|---|---|---|
 //! | clean | 100 | 99.0 | 17.6 |
-//! | 1 % noise | 99.5 | 99.5 | 46–80 |
+//! | 1 % noise | 100 | 99.5 | 46–80 |
 //! | + 20 % outliers | 100 | 98.5 | 46–80 |
 //! | + 40 % outliers | 100 | 99.5 | 46–80 |
 //! | + 60 % outliers, share unknown | 100 | 9.5 (97 of a known share) | 187 |
-//! | one-sided view | 93.5 | 65.5 | |
-//! | view + 20 % outliers | 93.5 | 56 | |
+//! | one-sided view | 94 | 65.5 | |
+//! | view + 20 % outliers | 94.5 | 56 | |
 //! | on a table, 40 % of the points | 100 | 86.5 | |
 //!
 //! Published times are of Python. `cargo bench --bench fit` prints those of this crate: on one
-//! thread of a machine that did other things as well, 0.9 ms clean, 2.5 of 60 % outliers, 2 to 3.5
-//! of views, 3.6 on a table, some 12 for a supershape, and 60 of a million points. Published
+//! thread of a machine that did other things as well, 0.6 ms clean, 1.3 of 60 % outliers, 2 of
+//! views, 3.1 on a table, 1.3 deformed, some 12 for a supershape, and 40 of a million points. Published
 //! residuals, symmetry numbers and rational radii are options ([`Cost`](crate::fit::Cost),
 //! [`Symmetry`](crate::fit::Symmetry), [`Start`](crate::fit::Start)), so that the comparison can be
 //! repeated; [`fit`](crate::fit) says what they reach with this search.

@@ -15,14 +15,13 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::harmonics::{Around, FEWEST, MOST, Repeat, extremes};
+use super::harmonics::{Around, FEWEST, MOST, Repeat, STILL, TURNING, extremes, still, turned};
 use super::linear::{quantile, solved};
 use super::waves::WAVES;
 use crate::{Cancelled, Run};
 
-/// Terms: a profile, a tilt of the axis, an ellipse, the harmonics, and a shift.
-const TURNING: usize = 5;
-const SHIFT: usize = TURNING + 4 + WAVES;
+/// Terms: those without a repetition, the harmonics, and a shift.
+const SHIFT: usize = STILL + WAVES;
 const ALL: usize = SHIFT + 2;
 
 /// Points that are asked at most, and steps.
@@ -117,16 +116,16 @@ fn settled(belt: &[DVec3], height: f64, radius: f64, count: u32, begin: DVec2) -
         let (matrix, right, square) = equations(belt, shift, height, count, &terms);
         let mut free = [true; ALL];
         free[SHIFT..].fill(false);
-        let still = solved(&matrix, &right, &free)?;
-        let left = square - still.iter().zip(&right).map(|(x, r)| x * r).sum::<f64>();
+        let alone = solved(&matrix, &right, &free)?;
+        let left = square - alone.iter().zip(&right).map(|(x, r)| x * r).sum::<f64>();
         if best.as_ref().is_none_or(|b| left < b.1) {
-            let waves = std::array::from_fn(|i| still[TURNING + 4 + i]);
-            best = Some((shift, left, extremes(count, still[0], &waves)));
+            let waves = std::array::from_fn(|i| alone[STILL + i]);
+            best = Some((shift, left, extremes(count, alone[0], &waves)));
         }
         let step = solved(&matrix, &right, &[true; ALL])?;
         let moved = DVec2::new(step[SHIFT], step[SHIFT + 1]).clamp_length_max(STEP * radius);
         shift = (shift + moved).clamp_length_max(REACH * radius);
-        terms = still;
+        terms = alone;
         if moved.length() < 1e-3 * radius {
             break;
         }
@@ -153,17 +152,14 @@ fn equations(
         let [c, s] = (across / rho).to_array();
         let z = p.z / height;
         let mut row = [0.0; ALL];
-        row[..TURNING].copy_from_slice(&[1.0, z, z * z, z * z * z, z * z * z * z]);
+        row[..STILL].copy_from_slice(&still(z, [c, s]));
+        let [c2, s2] = [row[TURNING + 2], row[TURNING + 3]];
         let mut slope = z * (terms[TURNING + 1] * c - terms[TURNING] * s);
-        (row[TURNING], row[TURNING + 1]) = (z * c, z * s);
-        let (c2, s2) = (c * c - s * s, 2.0 * c * s);
-        (row[TURNING + 2], row[TURNING + 3]) = (c2, s2);
         slope += 2.0 * (terms[TURNING + 3] * c2 - terms[TURNING + 2] * s2);
-        let angle = f64::from(count) * across.to_angle();
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = (f64::from(count) * across.to_angle()).sin_cos();
         let (mut wave, mut times) = ([1.0, 0.0], f64::from(count));
-        for at in (TURNING + 4..SHIFT).step_by(2) {
-            wave = [wave[0] * cos - wave[1] * sin, wave[0] * sin + wave[1] * cos];
+        for at in (STILL..SHIFT).step_by(2) {
+            wave = turned(wave, [cos, sin]);
             (row[at], row[at + 1]) = (wave[0], wave[1]);
             slope += times * (terms[at + 1] * wave[0] - terms[at] * wave[1]);
             times += f64::from(count);

@@ -46,8 +46,8 @@ impl Scaled {
         if size == 0.0 {
             return Err(FitError::Flat { points: cloud.len(), extent: "all in one place" });
         }
-        if !(1e-6..=1e8).contains(&size) {
-            let (property, allowed) = ("in size", "0.000001 to 100000000");
+        if !(SIZES[0]..=SIZES[1]).contains(&size) {
+            let (property, allowed) = ("in size", "0.00001 to 10000000");
             return Err(FitError::Extent { property, value: size, allowed });
         }
         let points: Vec<DVec3> = order.iter().map(|i| (all[*i] - center) / size).collect();
@@ -57,18 +57,25 @@ impl Scaled {
     }
 }
 
+/// Sizes of clouds of which every fit is a solid: what is found is from 10⁻⁴ to 10² times as large,
+/// and lengths of solids are from 10⁻⁹ to 10⁹.
+const SIZES: [f64; 2] = [1e-5, 1e7];
+
 /// Points further from the middle than so many times the median distance from it are not of the
 /// object: a single one would make the size of the cloud its own.
 const STRAY: f64 = 100.0;
 
+/// So many points tell where the middle is, and how far from it points are.
+const ASKED: usize = 512;
+
 /// The points without those that are far from all others. Half of the points are never strays.
 fn without_strays(all: &[DVec3], order: Vec<usize>) -> Vec<usize> {
+    let some: Vec<DVec3> = order.iter().step_by(order.len().div_ceil(ASKED).max(1)).map(|i| all[*i]).collect();
     let middle = DVec3::from_array([0, 1, 2].map(|axis| {
-        let mut along: Vec<f64> = order.iter().map(|i| all[*i][axis]).collect();
+        let mut along: Vec<f64> = some.iter().map(|p| p[axis]).collect();
         median(&mut along)
     }));
-    let distance = |i: &usize| all[*i].distance(middle);
-    let typical = median(&mut order.iter().map(distance).collect::<Vec<_>>());
-    let is_near = |i: &usize| typical == 0.0 || distance(i) <= STRAY * typical;
+    let typical = median(&mut some.iter().map(|p| p.distance(middle)).collect::<Vec<_>>());
+    let is_near = |i: &usize| typical == 0.0 || all[*i].distance(middle) <= STRAY * typical;
     order.into_iter().filter(is_near).collect()
 }

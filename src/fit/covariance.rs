@@ -1,9 +1,6 @@
 //! How certain the parameters of a fit are.
 
-use super::cost::Cost;
-use super::kernel::{Model, pass};
 use super::linear::solved;
-use super::samples::Samples;
 
 /// Covariance of the parameters of a fit: the inverse of JᵀWJ/σ².
 ///
@@ -39,24 +36,8 @@ impl Covariance {
         Some(self.value(at, at).max(0.0).sqrt())
     }
 
-    /// Of a model in a cloud that was scaled to `size`, from points of the sample, each by its
-    /// weight, where the whole cloud has `share` times as many.
-    pub(super) fn of<M: Model<N>, const N: usize>(
-        model: &M,
-        names: [&'static str; N],
-        samples: &Samples<f64>,
-        weights: &[f64],
-        noise: f64,
-        share: f64,
-        size: f64,
-    ) -> Covariance {
-        let mut residuals = vec![0.0; samples.padded()];
-        let sums = pass(model, samples, weights, Cost::Normal, &mut residuals);
-        let units = std::array::from_fn(|i| if i + 3 >= N { size } else { 1.0 });
-        Covariance::from_normal(names, &sums.hessian, noise, share, units)
-    }
-
-    /// The inverse of JᵀWJ (its lower triangle), each parameter in units of its own.
+    /// The inverse of JᵀWJ (its lower triangle) of a sample, where the whole cloud has `share` times
+    /// as many points; each parameter in units of its own.
     pub(super) fn from_normal<const N: usize>(
         names: [&'static str; N],
         normal: &[[f64; N]; N],

@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use super::check::check_depth;
-use super::deformable::Deformable;
+use super::deformable::{Deformable, PARAMETERS};
 use super::deformations::search;
 use super::error::FitError;
-use super::mixture::{Mixture, Polish};
+use super::mixture::{Mixture, Polish, Weighed};
 use super::random::Random;
 use super::recover::{Effort, Scene, fit, fit_by};
 use super::samples::Samples;
@@ -22,6 +22,8 @@ pub(super) enum Straight {
 
 pub(super) struct DeformedRecovered {
     pub(super) best: Straight,
+    /// What a deformed one says of the points.
+    pub(super) weighed: Option<Weighed<PARAMETERS>>,
     pub(super) effort: Effort,
     pub(super) one_sided: bool,
 }
@@ -47,16 +49,21 @@ pub(super) fn recover_deformed(
     let (noise, area) = (found.noise.max(1e-6), quadric.mixture.log_area());
     let mut mixture = Mixture { model: found.model, noise, strewn, volume: scene.volume, log_area: Some(area) };
     let how = |rounds| Polish { rounds, steps: 3, area: 0.0, all: points.len(), cost: settings.cost };
-    effort.evaluations += mixture.polish(&Samples::<f32>::new(points.iter().copied()), how(2));
-    effort.evaluations += mixture.polish(&samples, how(1));
-    let found = mixture.criterion_of(&samples);
-    let mut is_better = found > quadric.mixture.criterion_of(&samples);
+    effort.evaluations += mixture.polish(&Samples::<f32>::new(points.iter().copied()), how(1)).evaluations;
+    let (weighed, last) = mixture.settle(&samples, Polish { steps: 1, ..how(1) });
+    effort.evaluations += last;
+    let found = mixture.criterion(weighed.residuals.iter().copied());
+    let mut is_better = found > quadric.criterion();
     if is_better && mixture.model.is_slight() {
         quadric = fit(points, &scene, settings.cost, &second)?;
         effort.evaluations += quadric.effort.evaluations;
         effort.tried += quadric.effort.tried;
-        is_better = found > quadric.mixture.criterion_of(&samples);
+        is_better = found > quadric.criterion();
     }
-    let best = if is_better { Straight::Deformed(mixture) } else { Straight::Quadric(quadric.mixture) };
-    Ok(DeformedRecovered { best, effort, one_sided: quadric.one_sided })
+    let (best, weighed) = if is_better {
+        (Straight::Deformed(mixture), Some(weighed))
+    } else {
+        (Straight::Quadric(quadric.mixture), None)
+    };
+    Ok(DeformedRecovered { best, weighed, effort, one_sided: quadric.one_sided })
 }

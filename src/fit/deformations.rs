@@ -23,6 +23,12 @@ pub(super) struct Deformed {
     pub(super) tried: usize,
 }
 
+/// Points of the first fits, of those of the best few, and that starts are made of. The padding of
+/// what is no multiple of 32 takes as long as points.
+const FEW: usize = 96;
+const MORE: usize = 320;
+const SEEN: usize = 500;
+
 /// A fit is as good as the noise where its deviation is below this times that of local planes.
 const GOOD: f64 = 1.3;
 
@@ -39,19 +45,23 @@ pub(super) fn search(
     run: &Run,
 ) -> Result<Deformed, Cancelled> {
     let first = |count: usize| Samples::<f32>::new(points[..count.min(points.len())].iter().copied());
-    let (few, more) = (first(150), first(400));
+    let (few, more) = (first(FEW), first(MORE));
     let (mut evaluations, mut tried) = (0, 0);
     let early = if cost == Cost::Normal { Cost::Radial } else { cost };
-    let mut fit = |start: Deformable, samples: &Samples<f32>, cost, steps| -> Result<(f64, Deformable), Cancelled> {
+    let mut fit = |start: Deformable,
+                   samples: &Samples<f32>,
+                   cost,
+                   [rounds, steps]: [usize; 2]|
+     -> Result<(f64, Deformable), Cancelled> {
         run.check()?;
-        let how = Robust { rounds: 3, steps, width: 3.0, area: 0.3, gain: 1e-3 };
+        let how = Robust { rounds, steps, width: 3.0, area: 0.3, gain: 1e-2 };
         let fitted = Problem { samples, cost }.robust(start, how);
         evaluations += fitted.evaluations;
         tried += 1;
         run.report(1.0 - 1.0 / (1.0 + 0.1 * tried as f64));
         Ok((fitted.deviation(samples.len()), fitted.model))
     };
-    let mut starts = starts(points);
+    let mut starts = starts(&points[..points.len().min(SEEN)]);
     starts.push(Deformable { base: *quadric, taper: [0.0; 2], twist: 0.0, bend: DVec2::ZERO });
     let mut best: Option<(f64, Deformable)> = None;
     for round in 0..2 {
@@ -62,10 +72,10 @@ pub(super) fn search(
             starts = TWISTS.iter().flat_map(|w| starts.iter().map(|s| s.twisted(*w)).collect::<Vec<_>>()).collect();
         }
         let mut found =
-            starts.iter().map(|s| fit(*s, &few, early, 5)).collect::<Result<Vec<(f64, Deformable)>, _>>()?;
+            starts.iter().map(|s| fit(*s, &few, early, [2, 5])).collect::<Result<Vec<(f64, Deformable)>, _>>()?;
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, model) in found.into_iter().take(3) {
-            let next = fit(model, &more, cost, 4)?;
+            let next = fit(model, &more, cost, [3, 4])?;
             if best.as_ref().is_none_or(|b| next.0 < b.0) {
                 best = Some(next);
             }

@@ -75,10 +75,10 @@ pub fn deformed_with(cloud: &PointCloud, settings: &FitSettings, run: &Run) -> R
         ..SearchReport::default()
     };
     match found.best {
-        Straight::Quadric(mixture) => finish_quadric(cloud, &scaled, &mixture, search, &run),
+        Straight::Quadric(mixture) => finish_quadric(cloud, &scaled, &mixture, None, search, &run),
         Straight::Deformed(mixture) => {
             let shape = Shape::Deformed(leaf(&mixture.model, scaled.size));
-            finish(cloud, &scaled, &mixture, shape, NAMES, search, &run)
+            finish(cloud, &scaled, &mixture, found.weighed, (shape, NAMES), search, &run)
         }
     }
 }

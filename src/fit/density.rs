@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::grid::{Grid, extent, volume};
-use super::linear::median;
+use super::lonely::lonely;
 
 /// What is found of a cloud.
 pub(super) struct Dense {
@@ -19,12 +19,6 @@ pub(super) struct Dense {
 
 /// Fewer points are no surface to begin with.
 const FEWEST: usize = 24;
-
-/// A point is kept if it is no further from its neighbours than this times what is usual about it.
-const LONELY: f64 = 1.35;
-
-/// Neighbours that distances are taken to, the point itself among them.
-const NEIGHBOURS: usize = 8;
 
 pub(super) fn dense(points: &[DVec3]) -> Dense {
     let count = points.len();
@@ -53,26 +47,10 @@ pub(super) fn dense(points: &[DVec3]) -> Dense {
 fn purify(points: &[DVec3], kept: &mut Vec<usize>, cell: f64) {
     let some: Vec<DVec3> = kept.iter().map(|i| points[*i]).collect();
     // So large that the block about a point holds its neighbours most often.
-    let grid = Grid::new(&some, extent(&some), 1.7 * cell);
-    let mut found = Vec::with_capacity(NEIGHBOURS);
-    let mut near = Vec::with_capacity(some.len());
-    let reach: Vec<f64> = some
-        .iter()
-        .map(|p| {
-            grid.nearest(*p, NEIGHBOURS, &mut found);
-            // There are more points than neighbours.
-            near.push(std::array::from_fn::<u32, NEIGHBOURS, _>(|i| found[i].1));
-            found[NEIGHBOURS - 1].0.sqrt()
-        })
-        .collect();
-    let mut at = 0;
+    let lonely = lonely(&Grid::new(&some, extent(&some), 1.7 * cell));
     let before = kept.clone();
-    kept.retain(|_| {
-        let mut around = near[at].map(|i| reach[i as usize]);
-        let lonely = reach[at] >= LONELY * median(&mut around).max(f64::MIN_POSITIVE);
-        at += 1;
-        !lonely
-    });
+    let mut lonely = lonely.iter();
+    kept.retain(|_| lonely.next() != Some(&true));
     if kept.len() < FEWEST {
         *kept = before;
     }

@@ -18,7 +18,8 @@ pub(super) struct Foot {
     pub(super) off: f64,
 }
 
-/// The feet of points: exact for what is near the surface compared with its curvature.
+/// The feet of points: exact for what is near the surface compared with its curvature, and wherever
+/// the value is the true distance, which the first step then goes.
 pub(super) fn feet(program: &Program, points: &[DVec3], run: &Run) -> Result<Vec<Foot>, Cancelled> {
     let slopes = Slopes { program, precision: 0.0 };
     let mut feet = points.to_vec();
@@ -44,4 +45,34 @@ pub(super) fn feet(program: &Program, points: &[DVec3], run: &Run) -> Result<Vec
         Foot { point: feet[i], normal: last[i].normal(), off }
     };
     Ok((0..points.len()).map(made).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::compiled_with;
+    use crate::{Solid, deg};
+
+    /// Where the solid's value is its distance, feet are the nearest points of the surface, at edges
+    /// and far away as well.
+    #[test]
+    fn feet_are_the_nearest_points_where_values_are_distances() {
+        let pin = Solid::cylinder(0.4, 2.0).rotate_x(deg(40.0)).translate([0.3, 0.1, 0.8]);
+        let part = Solid::cuboid([3.0, 2.0, 1.0]) | pin;
+        let programs = compiled_with(&part, &Run::default()).unwrap();
+        let at = |i: u32| {
+            let t = f64::from(i);
+            3.0 * DVec3::new((1.3 * t).sin(), (2.1 * t).cos(), (0.7 * t).sin())
+        };
+        let points: Vec<DVec3> = (0..300).map(at).collect();
+        let found = feet(&programs.surface, &points, &Run::default()).unwrap();
+        let mut exact = 0;
+        for (p, foot) in points.iter().zip(&found) {
+            let Some(nearest) = programs.foot(*p) else { continue };
+            exact += 1;
+            assert!(foot.point.distance(nearest) < 1e-9, "{p}: {} {nearest}", foot.point);
+            assert!((foot.off - p.distance(nearest)).abs() < 1e-9, "{p}: {}", foot.off);
+        }
+        assert!(exact > 200, "{exact} of {}", points.len());
+    }
 }

@@ -9,7 +9,7 @@ use super::covariance::Covariance;
 use super::deviations::Deviation;
 use super::error::FitError;
 use super::kernel::{Model, residuals};
-use super::mixture::Mixture;
+use super::mixture::{Mixture, Weighed};
 use super::result::{Fit, SearchReport, Shape};
 use super::samples::Samples;
 use crate::geom::PointCloud;
@@ -19,40 +19,37 @@ use rvachev_field::check::LARGEST_LENGTH;
 /// If a smaller share of the points is of the solid, it is not what they are of.
 const FEWEST: f64 = 0.05;
 
-/// Points that are of the surface with a smaller chance tell nothing of it.
-const NONE: f64 = 1e-4;
-
 /// Points that one thread weighs at a time.
 const CHUNK: usize = 4096;
 
 /// Weighs all points of a cloud by a model of it, whose shape is given in the cloud's length units.
+/// What the model says of the searched points may be known.
 pub(super) fn finish<M: Model<N>, const N: usize>(
     cloud: &PointCloud,
     scaled: &Scaled,
     mixture: &Mixture<M>,
-    shape: Shape,
-    names: [&'static str; N],
+    known: Option<Weighed<N>>,
+    shape: (Shape, [&'static str; N]),
     search: SearchReport,
     run: &Run,
 ) -> Result<Fit, FitError> {
     let Mixture { model, noise, .. } = mixture;
-    let log_area = mixture.log_area();
-    let distances = |points: &mut dyn ExactSizeIterator<Item = DVec3>| {
-        let samples = Samples::<f64>::new(points);
-        let mut off = vec![0.0; samples.padded()];
-        residuals(model, &samples, Cost::Normal, &mut off);
-        off.truncate(samples.len());
-        off
-    };
+    let (shape, names) = shape;
+    let Weighed { residuals: off, chances, sums } = known.unwrap_or_else(|| {
+        let samples = Samples::<f64>::new(scaled.points.iter().copied());
+        mixture.weigh(&samples, Cost::Normal)
+    });
+    let chance = mixture.chance();
     let weighed = |points: &[DVec3]| -> Result<Vec<(f32, f64)>, Cancelled> {
         run.check()?;
-        let off = distances(&mut points.iter().map(|p| (*p - scaled.center) / scaled.size));
-        Ok(off.into_iter().map(|d| (mixture.chance(log_area, d) as f32, d)).collect())
+        let samples = Samples::<f64>::new(points.iter().map(|p| (*p - scaled.center) / scaled.size));
+        let mut off = vec![0.0; samples.padded()];
+        residuals(model, &samples, Cost::Normal, &mut off);
+        Ok(off[..samples.len()].iter().map(|d| (chance.at(*d) as f32, *d)).collect())
     };
     let all = cloud.positions();
-    // Threads are long to wake for little.
-    let chunks: Vec<_> = if all.len() <= CHUNK {
-        vec![weighed(all)?]
+    let chunks: Vec<Vec<(f32, f64)>> = if scaled.is_whole {
+        vec![chances.iter().zip(&off).map(|(p, d)| (*p as f32, *d)).collect()]
     } else {
         run.install(|| all.par_chunks(CHUNK).map(weighed).collect::<Result<_, _>>())?
     };
@@ -63,18 +60,9 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
     }
     run.check()?;
     let deviation = Deviation::of(chunks.iter().flatten().filter(|w| w.0 > 0.5).map(|w| w.1 * scaled.size));
-    let off: Vec<f64> = if scaled.is_whole {
-        chunks.iter().flatten().map(|w| w.1).collect()
-    } else {
-        distances(&mut scaled.points.iter().copied())
-    };
-    let chances: Vec<f64> = off.iter().map(|d| mixture.chance(log_area, *d)).collect();
-    let on: Vec<usize> = (0..off.len()).filter(|i| chances[*i] > NONE).collect();
-    let samples = Samples::<f64>::new(on.iter().map(|i| scaled.points[*i]));
-    let mut chances: Vec<f64> = on.iter().map(|i| chances[*i]).collect();
-    chances.resize(samples.padded(), 0.0);
     let share = cloud.len() as f64 / off.len() as f64;
-    let covariance = Covariance::of(model, names, &samples, &chances, *noise, share, scaled.size);
+    let units = std::array::from_fn(|i| if i + 3 >= N { scaled.size } else { 1.0 });
+    let covariance = Covariance::from_normal(names, &sums.hessian, *noise, share, units);
     let criterion = mixture.criterion(off.iter().copied());
     let (rotation, center) = model.pose();
     let fit = Fit {

@@ -92,6 +92,12 @@ struct Radius<R> {
     by: [R; 3],
 }
 
+/// A share times a tangent: shares vanish where its denominator does.
+#[inline(always)]
+fn tangent<R: Real>(share: R, x: R, over: R) -> R {
+    share * x * over / (over.square() + 1e-14)
+}
+
 impl Curve {
     #[inline(always)]
     fn radius<R: Real>(&self, angle: R, rational: bool) -> Radius<R> {
@@ -103,8 +109,6 @@ impl Curve {
         }
         let (lc, ls) = (cos.abs().log2(), sin.abs().log2());
         let (sum, wc, ws, _) = joined(lc * n2, ls * n3);
-        // Shares vanish where their logarithms grow.
-        let tangent = |share: R, x: R, over: R| share * x * over / (over.square() + 1e-14);
         let slope = (tangent(wc, sin, cos) * n2 - tangent(ws, cos, sin) * n3) * (quarter / n1);
         let by = [sum * (LN_2 / n1), wc * lc * (-n2 * LN_2 / n1), ws * ls * (-n3 * LN_2 / n1)];
         Radius { log: sum * (-LN_2 / n1), slope, by }
@@ -125,8 +129,8 @@ impl Curve {
         let sign = (sin.select(one, -one)) * (cos.select(one, -one));
         let (gu, gv) = (one / du.square() * n2, one / dv.square() * n3);
         let slope = fall * (gu * v - gv * u) * sign * quarter;
-        let of = |t: R, d: R, n: f64| fall * t * (-t + 1.0) / d.square() * n;
-        let by = [(-part + 1.0 / n1) / whole + LN_2 / n1, of(u, du, n2), of(v, dv, n3)];
+        let (by_u, by_v) = (u * (-u + 1.0) / du.square() * n2, v * (-v + 1.0) / dv.square() * n3);
+        let by = [(-part + 1.0 / n1) / whole + LN_2 / n1, fall * by_u, fall * by_v];
         Radius { log: (whole.log2() - 1.0 / n1) * LN_2, slope, by }
     }
 

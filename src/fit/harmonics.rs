@@ -14,8 +14,13 @@ use glam::{DMat3, DVec2, DVec3};
 use super::linear::{circle, quantile, solved};
 use super::waves::{WAVES, column, sums};
 
-/// Terms without a repetition, and with one.
-const BASE: usize = 11;
+/// Terms of a surface about its middle: a profile, a tilt of the axis, an ellipse.
+pub(super) const STILL: usize = 9;
+/// Where those begin that change about the axis.
+pub(super) const TURNING: usize = 5;
+
+/// With a shift, and with a repetition.
+const BASE: usize = STILL + 2;
 const ALL: usize = BASE + WAVES;
 
 /// Repetitions that are tried.
@@ -117,6 +122,17 @@ pub(super) fn ring_center(points: &[DVec3], axis: DVec3, center: DVec3) -> Optio
     (away.length() > APART * radius && away.length() < radius).then(|| center + away)
 }
 
+/// The terms of a point without a repetition: by its height, and the cosine and sine of its angle.
+pub(super) fn still(z: f64, [c, s]: [f64; 2]) -> [f64; STILL] {
+    let z2 = z * z;
+    [1.0, z, z2, z * z2, z2 * z2, z * c, z * s, c * c - s * s, 2.0 * c * s]
+}
+
+/// The cosine and sine of the sum of two angles.
+pub(super) fn turned([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+    [a * c - b * d, a * d + b * c]
+}
+
 fn repeats(local: &[DVec3], height: f64) -> Vec<Repeat> {
     let height = height.max(1e-6);
     let belt: Vec<DVec3> =
@@ -129,10 +145,11 @@ fn repeats(local: &[DVec3], height: f64) -> Vec<Repeat> {
     let base: Vec<[f64; BASE]> = belt
         .iter()
         .zip(&turns)
-        .map(|(p, [c, s])| {
-            let z = p.z / height;
-            let z2 = z * z;
-            [1.0, z, z2, z * z2, z2 * z2, *c, *s, z * c, z * s, c * c - s * s, 2.0 * c * s]
+        .map(|(p, turn)| {
+            let mut row = [0.0; BASE];
+            row[..STILL].copy_from_slice(&still(p.z / height, *turn));
+            row[STILL..].copy_from_slice(turn);
+            row
         })
         .collect();
     let mut matrix = [[0.0; ALL]; ALL];
@@ -158,10 +175,9 @@ fn repeats(local: &[DVec3], height: f64) -> Vec<Repeat> {
     let Some((alone, _)) = rest(&matrix, &right, &free) else { return Vec::new() };
     free = [true; ALL];
     let mut powers = turns.clone();
-    let times = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a * c - b * d, a * d + b * c];
     let step = |powers: &mut [[f64; 2]]| {
         for (power, turn) in powers.iter_mut().zip(&turns) {
-            *power = times(*power, *turn);
+            *power = turned(*power, *turn);
         }
     };
     step(&mut powers);

@@ -8,13 +8,16 @@
 //!
 //! A shape gives `ln G`, its gradient, and its derivatives by the shape's parameters; all residuals
 //! follow from these. The sums run on SIMD lanes, in `f32` for the search and in `f64` for the last
-//! steps; two vectors at a time, as one alone waits for itself. The sign of residuals is that of
-//! lengths here: negative inside.
+//! steps; two vectors at a time, as one alone waits for itself. What computes with lanes is a
+//! function that is always inlined, not a closure: those are compiled without the vectors' features,
+//! and each of their operations is a call. The sign of residuals is that of lengths here: negative
+//! inside.
 //!
 //! Sources: F. Solina, R. Bajcsy, *Recovery of parametric models from range images* (1990);
 //! A. Gross, T. Boult, *Error of fit measures for recovering parametric solids* (1988).
 
 use std::f64::consts::LN_2;
+use std::ops::Range;
 
 use fearless_simd::{Level, Simd, SimdBase, dispatch};
 use glam::{DMat3, DVec3};
@@ -35,7 +38,7 @@ pub(super) trait Model<const N: usize>: Copy + Sync {
     fn log_gauge<R: Real>(&self, q: [R; 3], rows: &mut [R; N]) -> LogGauge<R>;
 
     /// `ln √(a₁a₂a₃)` is half the sum of these rows' parameters.
-    fn sizes(&self) -> (std::ops::Range<usize>, f64);
+    fn sizes(&self) -> (Range<usize>, f64);
 
     /// The model moved by a step of the parameters, which must be within [`limits`](Model::limits).
     fn moved(&self, step: &[f64; N]) -> Self;
@@ -88,9 +91,60 @@ pub(super) fn joined<R: Real>(u: R, v: R) -> (R, R, R, R) {
     (hi + log, (u - v).select(large_share, small_share), (u - v).select(small_share, large_share), entropy)
 }
 
+/// How much points count.
+trait Weights<E: Number> {
+    /// The weights of these points, by their residuals if they are made of them.
+    fn at<S: Simd>(&mut self, simd: S, at: Range<usize>, residuals: Twice<E::Vector<S>>) -> Twice<E::Vector<S>>;
+}
+
+/// Weights that are given.
+struct Given<'a, E>(&'a [E]);
+
+impl<E: Number> Weights<E> for Given<'_, E> {
+    #[inline(always)]
+    fn at<S: Simd>(&mut self, simd: S, at: Range<usize>, _: Twice<E::Vector<S>>) -> Twice<E::Vector<S>> {
+        <Twice<E::Vector<S>> as Lanes>::load(simd, &self.0[at])
+    }
+}
+
+/// The chance of a point to be of the surface by its residual: `1/(1 + 2^(curve·d² + shift))`.
+#[derive(Clone, Copy)]
+pub(super) struct Chance {
+    pub(super) curve: f64,
+    pub(super) shift: f64,
+}
+
+impl Chance {
+    pub(super) fn at(self, residual: f64) -> f64 {
+        1.0 / (1.0 + (self.curve * residual * residual + self.shift).exp2())
+    }
+}
+
+/// Chances as weights, which are kept.
+struct Chances<'a, E> {
+    chance: Chance,
+    /// 1 for points, 0 for the padding.
+    counts: &'a [E],
+    kept: &'a mut [E],
+}
+
+impl<E: Number> Weights<E> for Chances<'_, E> {
+    #[inline(always)]
+    fn at<S: Simd>(&mut self, simd: S, at: Range<usize>, d: Twice<E::Vector<S>>) -> Twice<E::Vector<S>> {
+        let counts = <Twice<E::Vector<S>> as Lanes>::load(simd, &self.counts[at.clone()]);
+        let Chance { curve, shift } = self.chance;
+        let odds = d.square().scale_add(curve, d.lift(shift)).exp2();
+        let chances = counts / (odds + 1.0);
+        chances.store(&mut self.kept[at]);
+        chances
+    }
+}
+
 /// The sums of a pass.
 #[derive(Clone, Copy)]
 pub(super) struct Sums<const N: usize> {
+    /// Sum of the weights.
+    pub(super) weight: f64,
     /// Sum of the weighted squares.
     pub(super) square: f64,
     /// Half its gradient.
@@ -149,7 +203,20 @@ pub(super) fn pass<E: Number, M: Model<N>, const N: usize>(
     cost: Cost,
     residuals: &mut [E],
 ) -> Sums<N> {
-    dispatch!(Level::new(), simd => pass_on::<_, E, M, N>(simd, model, samples, weights, cost, residuals))
+    dispatch!(Level::new(), simd => pass_on::<_, E, M, N>(simd, model, samples, Given(weights), cost, residuals))
+}
+
+/// The same with chances for weights, which are kept; 0 for the padding.
+pub(super) fn pass_by_chance<E: Number, M: Model<N>, const N: usize>(
+    model: &M,
+    samples: &Samples<E>,
+    chance: Chance,
+    kept: &mut [E],
+    cost: Cost,
+    residuals: &mut [E],
+) -> Sums<N> {
+    let chances = Chances { chance, counts: samples.counts(), kept };
+    dispatch!(Level::new(), simd => pass_on::<_, E, M, N>(simd, model, samples, chances, cost, residuals))
 }
 
 #[inline(always)]
@@ -157,57 +224,64 @@ fn pass_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
     simd: S,
     model: &M,
     samples: &Samples<E>,
-    weights: &[E],
+    mut weights: impl Weights<E>,
     cost: Cost,
     residuals: &mut [E],
 ) -> Sums<N> {
     let width = <Twice<E::Vector<S>> as Lanes>::WIDTH;
     let zero = <E::Vector<S> as Lanes>::splat(simd, 0.0);
-    let mut square = zero;
-    let mut gradient = [zero; N];
-    let mut hessian = [[zero; N]; N];
+    // Weight, square, gradient, and the lower triangle of the second derivatives, one after another.
+    let mut sums = [zero; SUMS];
     let [xs, ys, zs] = samples.columns();
     for start in (0..samples.padded()).step_by(width) {
         let at = start..start + width;
         let load = |from: &[E]| <Twice<E::Vector<S>> as Lanes>::load(simd, &from[at.clone()]);
         let (residual, rows) = terms::<_, M, N>(model, [load(xs), load(ys), load(zs)], cost);
-        let weight = load(weights);
-        residual.store(&mut residuals[at.clone()]);
+        let weight = weights.at(simd, at.clone(), residual);
+        residual.store(&mut residuals[at]);
+        sums[0] = sums[0] + weight.0 + weight.1;
         let Twice(r, s) = residual * weight;
-        square = r.mul_add(residual.0, s.mul_add(residual.1, square));
+        sums[1] = r.mul_add(residual.0, s.mul_add(residual.1, sums[1]));
+        let mut at = 2 + N;
         for i in 0..N {
-            gradient[i] = r.mul_add(rows[i].0, s.mul_add(rows[i].1, gradient[i]));
+            sums[2 + i] = r.mul_add(rows[i].0, s.mul_add(rows[i].1, sums[2 + i]));
             let Twice(a, b) = rows[i] * weight;
             for j in 0..=i {
-                hessian[i][j] = a.mul_add(rows[j].0, b.mul_add(rows[j].1, hessian[i][j]));
+                sums[at] = a.mul_add(rows[j].0, b.mul_add(rows[j].1, sums[at]));
+                at += 1;
             }
         }
     }
-    let mut sums = Sums { square: 0.0, gradient: [0.0; N], hessian: [[0.0; N]; N] };
-    let [first] = lane_sums::<S, E, 1>(simd, &[square]);
-    sums.square = first;
-    sums.gradient = lane_sums::<S, E, N>(simd, &gradient);
+    let mut totals = [0.0; SUMS];
+    let count = 2 + N + N * (N + 1) / 2;
+    lane_sums::<S, E>(simd, &sums[..count.next_multiple_of(<E::Vector<S> as Lanes>::WIDTH)], &mut totals);
+    let [weight, square] = [totals[0], totals[1]];
+    let mut sums = Sums { weight, square, gradient: [0.0; N], hessian: [[0.0; N]; N] };
+    sums.gradient.copy_from_slice(&totals[2..2 + N]);
+    let mut at = 2 + N;
     for i in 0..N {
-        let row = lane_sums::<S, E, N>(simd, &hessian[i]);
-        sums.hessian[i][..=i].copy_from_slice(&row[..=i]);
+        sums.hessian[i][..=i].copy_from_slice(&totals[at..=at + i]);
+        at += i + 1;
     }
     sums
 }
 
-/// The sum over the lanes of each vector.
+/// Sums of the largest model, in whole blocks of the widest vectors.
+const SUMS: usize = 160;
+
+/// The sum over the lanes of each vector; of a multiple of their width.
 #[inline(always)]
-fn lane_sums<S: Simd, E: Number, const N: usize>(simd: S, vectors: &[E::Vector<S>; N]) -> [f64; N] {
-    // No vector is wider, and no model has more rows.
+fn lane_sums<S: Simd, E: Number>(simd: S, vectors: &[E::Vector<S>], sums: &mut [f64; SUMS]) {
+    // No vector is wider.
     const MOST: usize = 16;
     let width = <E::Vector<S> as Lanes>::WIDTH;
     let zero = <E::Vector<S> as Lanes>::splat(simd, 0.0);
-    let mut sums = [0.0; N];
-    let mut buffer = [E::default(); MOST];
-    for start in (0..N).step_by(width) {
-        let mut block = [zero; MOST];
-        let count = width.min(N - start);
-        block[..count].copy_from_slice(&vectors[start..start + count]);
-        let mut left = width;
+    let (mut buffer, mut block) = ([E::default(); MOST], [zero; MOST]);
+    for (some, sums) in vectors.chunks_exact(width).zip(sums.chunks_exact_mut(width)) {
+        let mut left = width / 2;
+        for i in 0..left {
+            block[i] = E::pair_sums::<S>(some[2 * i], some[2 * i + 1]);
+        }
         while left > 1 {
             left /= 2;
             for i in 0..left {
@@ -215,11 +289,10 @@ fn lane_sums<S: Simd, E: Number, const N: usize>(simd: S, vectors: &[E::Vector<S
             }
         }
         block[0].store(&mut buffer[..width]);
-        for (sum, lane) in sums[start..start + count].iter_mut().zip(&buffer) {
+        for (sum, lane) in sums.iter_mut().zip(&buffer) {
             *sum = lane.to();
         }
     }
-    sums
 }
 
 /// Residuals of all points.
@@ -256,13 +329,12 @@ fn residuals_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
 pub(super) fn terms<R: Real, M: Model<N>, const N: usize>(model: &M, p: [R; 3], cost: Cost) -> (R, [R; N]) {
     let (rotation, center) = model.pose();
     let from = [p[0] - center.x, p[1] - center.y, p[2] - center.z];
-    let axis = |axis: DVec3| from[0].scale_add(axis.x, from[1].scale_add(axis.y, from[2] * axis.z));
-    let q = [axis(rotation.x_axis), axis(rotation.y_axis), axis(rotation.z_axis)];
+    let q = [along(from, rotation.x_axis), along(from, rotation.y_axis), along(from, rotation.z_axis)];
     let mut rows = [p[0].lift(0.0); N];
     let LogGauge { log2, gradient: g, radius } = model.log_gauge(q, &mut rows);
     let shape = N - 6;
     // What ln G is multiplied by in derivatives, and what the translation has besides.
-    let (residual, factor, along) = match cost {
+    let (residual, factor, beside) = match cost {
         Cost::Radial | Cost::Normal => {
             let inverse = (-log2).exp2();
             let off = -inverse + 1.0;
@@ -301,9 +373,15 @@ pub(super) fn terms<R: Real, M: Model<N>, const N: usize>(model: &M, p: [R; 3], 
     let [turn, shift] = pose_rows(q, g);
     for k in 0..3 {
         rows[shape + k] = turn[k] * factor;
-        rows[shape + 3 + k] = shift[k] * factor - q[k] * along;
+        rows[shape + 3 + k] = shift[k] * factor - q[k] * beside;
     }
     (residual, rows)
+}
+
+/// How far a vector reaches along an axis.
+#[inline(always)]
+fn along<R: Real>(v: [R; 3], axis: DVec3) -> R {
+    v[0].scale_add(axis.x, v[1].scale_add(axis.y, v[2] * axis.z))
 }
 
 /// Derivatives of `ln G` by a rotation about the local axes and a translation along them.

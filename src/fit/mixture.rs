@@ -10,12 +10,12 @@
 //! Source: W. Liu et al., *Robust and accurate superquadric recovery: a probabilistic approach*
 //! (2022).
 
-use std::f64::consts::TAU;
+use std::f64::consts::{LOG2_E, TAU};
 
 use super::cost::Cost;
-use super::kernel::{Model, Number};
+use super::kernel::{Chance, Model, Number, Sums, pass_by_chance};
 use super::samples::Samples;
-use super::solve::{Fitted, Problem};
+use super::solve::{Fitted, Problem, step};
 
 /// Models that are off by less than this, of a cloud of size 1, are told apart by the number of
 /// their parameters only.
@@ -47,11 +47,29 @@ pub(super) struct Polish {
     pub(super) cost: Cost,
 }
 
+/// What a mixture says of points.
+pub(super) struct Weighed<const N: usize> {
+    /// How far each point is from the surface.
+    pub(super) residuals: Vec<f64>,
+    /// The chance of each point to be of it.
+    pub(super) chances: Vec<f64>,
+    /// The sums of the points by their chances.
+    pub(super) sums: Sums<N>,
+}
+
+/// Damping of the last steps, which are short.
+const DAMPING: f64 = 1e-4;
+
 impl<M: Copy> Mixture<M> {
-    /// The chance of a point at this distance to be of the surface.
-    pub(super) fn chance(&self, log_area: f64, distance: f64) -> f64 {
-        let on = self.on(log_area, distance);
-        on / (on + self.strewn / self.volume)
+    /// The chance of a point to be of the surface.
+    pub(super) fn chance<const N: usize>(&self) -> Chance
+    where
+        M: Model<N>,
+    {
+        let log_area = self.log_area();
+        let square = self.noise * self.noise;
+        let even = self.strewn / self.volume * TAU.sqrt() * self.noise / (1.0 - self.strewn);
+        Chance { curve: 0.5 * LOG2_E / square, shift: even.log2() + log_area * LOG2_E }
     }
 
     /// The density of the surface's points at this distance.
@@ -65,25 +83,79 @@ impl<M: Copy> Mixture<M> {
         Mixture { noise: self.noise.max(NOTHING), ..*self }
     }
 
-    /// Expectation and maximisation by turns; the evaluations that they took.
-    pub(super) fn polish<E: Number, const N: usize>(&mut self, samples: &Samples<E>, how: Polish) -> usize
+    /// Expectation and maximisation by turns.
+    pub(super) fn polish<E: Number, const N: usize>(&mut self, samples: &Samples<E>, how: Polish) -> Fitted<M, E>
     where
         M: Model<N>,
     {
         let len = samples.len();
-        let mut fitted = Fitted::new(self.model, samples, how.cost);
         let mut chances = vec![E::default(); samples.padded()];
+        let mut fitted = Fitted { model: self.model, residuals: chances.clone(), evaluations: 0 };
         let problem = Problem { samples, cost: how.cost };
         for _ in 0..how.rounds {
-            let sum = self.weigh(&fitted, &mut chances[..len]);
-            let square = self.noise * self.noise;
-            problem.descend(&mut fitted, &chances, [how.area * square * sum, square], how.steps, 1e-4);
+            let sums: Sums<N> =
+                pass_by_chance(&self.model, samples, self.chance(), &mut chances, how.cost, &mut fitted.residuals);
+            fitted.evaluations += len;
+            let (sum, square) = (sums.weight, self.noise * self.noise);
+            problem.descend_from(sums, &mut fitted, &chances, [how.area * square * sum, square], how.steps, 1e-4);
             self.model = fitted.model;
             let square: f64 = chances[..len].iter().zip(&fitted.residuals).map(|(p, d)| p.to() * d.to().powi(2)).sum();
-            self.noise = (square / sum.max(1.0)).sqrt().max(E::GRAIN);
-            self.strewn = (1.0 - sum / how.all as f64).clamp(1e-6, 0.999);
+            self.learn::<E>(sum, square, how.all);
         }
-        fitted.evaluations
+        fitted
+    }
+
+    /// Noise and share from the chances' sum and that of the squares.
+    fn learn<E: Number>(&mut self, sum: f64, square: f64, all: usize) {
+        self.noise = (square / sum.max(1.0)).sqrt().max(E::GRAIN);
+        self.strewn = (1.0 - sum / all as f64).clamp(1e-6, 0.999);
+    }
+
+    /// What is said of points.
+    pub(super) fn weigh<const N: usize>(&self, samples: &Samples<f64>, cost: Cost) -> Weighed<N>
+    where
+        M: Model<N>,
+    {
+        let (mut residuals, mut chances) = (vec![0.0; samples.padded()], vec![0.0; samples.padded()]);
+        let sums = pass_by_chance(&self.model, samples, self.chance(), &mut chances, cost, &mut residuals);
+        residuals.truncate(samples.len());
+        chances.truncate(samples.len());
+        Weighed { residuals, chances, sums }
+    }
+
+    /// The very last steps, in double precision: a pass a step. What is said of the points by the
+    /// normal distance then, and the evaluations that all of it took.
+    pub(super) fn settle<const N: usize>(&mut self, samples: &Samples<f64>, how: Polish) -> (Weighed<N>, usize)
+    where
+        M: Model<N>,
+    {
+        let mut weighed = self.weigh(samples, how.cost);
+        let mut passes = 1;
+        for _ in 0..how.steps {
+            let squares =
+                |now: &Weighed<N>| -> f64 { weighed.chances.iter().zip(&now.residuals).map(|(p, d)| p * d * d).sum() };
+            let (sum, square) = (weighed.sums.weight, self.noise * self.noise);
+            let beside = [how.area * square * sum, square];
+            let mut sums = weighed.sums;
+            Problem::<f64>::complete(&mut sums, &self.model, beside);
+            let Some(step) = step(&self.model, &sums, DAMPING) else { break };
+            let mut next = Mixture { model: self.model.moved(&step), ..*self };
+            next.learn::<f64>(sum, weighed.sums.square, how.all);
+            let found = next.weigh(samples, how.cost);
+            passes += 1;
+            let mut after = Sums { square: squares(&found), ..found.sums };
+            Problem::<f64>::complete(&mut after, &next.model, beside);
+            if after.square >= sums.square || after.square.is_nan() {
+                break;
+            }
+            (*self, weighed) = (next, found);
+        }
+        self.learn::<f64>(weighed.sums.weight, weighed.sums.square, how.all);
+        if how.cost != Cost::Normal {
+            weighed = self.weigh(samples, Cost::Normal);
+            passes += 1;
+        }
+        (weighed, passes * samples.len())
     }
 
     /// The logarithm of the area that the surface's points are spread over.
@@ -105,27 +177,21 @@ impl<M: Copy> Mixture<M> {
         residuals.map(|d| (tolerant.on(log_area, d) + self.strewn / self.volume).ln()).sum::<f64>() - price
     }
 
-    /// That of the points themselves.
-    pub(super) fn criterion_of<E: Number, const N: usize>(&self, samples: &Samples<E>) -> f64
+    /// That of points that the mixture was polished with.
+    pub(super) fn criterion_of<E: Number, const N: usize>(
+        &self,
+        samples: &Samples<E>,
+        polished: &Fitted<M, E>,
+        cost: Cost,
+    ) -> f64
     where
         M: Model<N>,
     {
-        let fitted = Fitted::new(self.model, samples, Cost::Normal);
-        self.criterion(fitted.residuals[..samples.len()].iter().map(|d| d.to()))
-    }
-
-    /// Chances by the residuals; their sum.
-    fn weigh<E: Number, const N: usize>(&self, fitted: &Fitted<M, E>, chances: &mut [E]) -> f64
-    where
-        M: Model<N>,
-    {
-        let log_area = self.log_area();
-        let mut sum = 0.0;
-        for (chance, residual) in chances.iter_mut().zip(&fitted.residuals) {
-            let p = self.chance(log_area, residual.to());
-            *chance = E::of(p);
-            sum += p;
+        let of = |residuals: &[E]| self.criterion(residuals[..samples.len()].iter().map(|d| d.to()));
+        if cost == Cost::Normal {
+            of(&polished.residuals)
+        } else {
+            of(&Fitted::new(self.model, samples, Cost::Normal).residuals)
         }
-        sum
     }
 }

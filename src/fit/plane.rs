@@ -10,6 +10,15 @@ use super::random::Random;
 const TRIES: usize = 100;
 const JUDGES: usize = 256;
 
+/// A plane is dropped that fewer than these of the first judges are on, or fewer of all of them than
+/// that: a table has many more.
+const FIRST: usize = 64;
+const FEWEST: usize = 6;
+const LEAST: usize = 20;
+
+/// Points that planes are settled by, before all.
+const SOME: usize = 400;
+
 /// Directions of the outline of what is beside the plane.
 const DIRECTIONS: u32 = 32;
 
@@ -39,15 +48,26 @@ pub(super) fn table(points: &[DVec3], random: &mut Random) -> Option<Table> {
         let [a, b, c] = [(); 3].map(|()| judges[random.below(judges.len())]);
         let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
         let table = Table { normal, offset: normal.dot(a), half };
-        let count = judges.iter().filter(|p| table.holds(**p)).count();
+        let on = |judges: &[DVec3]| judges.iter().filter(|p| table.holds(**p)).count();
+        let (first, others) = judges.split_at(FIRST.min(judges.len()));
+        let mut count = on(first);
+        if count * FIRST < FEWEST * first.len() {
+            continue;
+        }
+        count += on(others);
         if count > best.0 {
             best = (count, Some(table));
         }
     }
+    if best.0 * JUDGES < LEAST * judges.len() {
+        return None;
+    }
     let mut table = best.1?;
     let mut deviation = 0.0;
-    for _ in 0..4 {
-        let on = points.iter().copied().filter(|p| table.holds(*p));
+    for round in 1..=4 {
+        // They are in random order.
+        let some = if round < 4 { &points[..points.len().min(SOME)] } else { points };
+        let on = some.iter().copied().filter(|p| table.holds(*p));
         if on.clone().count() < 4 {
             return None;
         }
@@ -67,8 +87,10 @@ pub(super) fn table(points: &[DVec3], random: &mut Random) -> Option<Table> {
     }
     let u = table.normal.any_orthonormal_vector();
     let v = table.normal.cross(u);
-    let flat = |p: &DVec3| DVec2::new(u.dot(*p), v.dot(*p));
-    let (on, rest): (Vec<DVec2>, Vec<DVec2>) = (on.iter().map(flat).collect(), rest.iter().map(flat).collect());
+    let flat = |points: &[DVec3]| -> Vec<DVec2> {
+        points.iter().take(SOME).map(|p| DVec2::new(u.dot(*p), v.dot(*p))).collect()
+    };
+    let (on, rest) = (flat(&on), flat(&rest));
     let mut outside = vec![false; on.len()];
     for k in 0..DIRECTIONS {
         let direction = DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(DIRECTIONS));

@@ -9,16 +9,16 @@ use super::error::FitError;
 use super::grid::{extent, volume};
 use super::kernel::residuals;
 use super::local::{Local, local};
-use super::mixture::{Mixture, Polish};
+use super::mixture::{Mixture, Polish, Weighed};
 use super::plane::table;
 use super::random::Random;
 use super::samples::Samples;
 use super::search::Search;
-use super::superquadric::Superquadric;
+use super::superquadric::{PARAMETERS, Superquadric};
 use crate::{Cancelled, Run};
 
 /// Points of the first of the last steps, of a surface that is seen all around, and of one side.
-const SOME: [usize; 2] = [300, 400];
+const SOME: [usize; 2] = [320, 416];
 
 /// Points further from the surface than so many standard deviations, and than this length, are not
 /// of it, unless fewer are left than these.
@@ -58,11 +58,20 @@ impl Scene {
 /// A superellipsoid among points, with what it took.
 pub(super) struct Recovered {
     pub(super) mixture: Mixture<Superquadric>,
+    /// What it says of the points that it was fitted to; what is far counts as infinitely far.
+    pub(super) weighed: Weighed<PARAMETERS>,
     pub(super) effort: Effort,
     pub(super) one_sided: bool,
     rough: f64,
     /// The points of the table were left out.
     pub(super) table: Option<super::plane::Table>,
+}
+
+impl Recovered {
+    /// How well it explains the points that it was fitted to.
+    pub(super) fn criterion(&self) -> f64 {
+        self.mixture.criterion(self.weighed.residuals.iter().copied())
+    }
 }
 
 /// Fits points, which are to be of a size near 1.
@@ -108,7 +117,7 @@ pub(super) fn fit(points: &[DVec3], scene: &Scene, cost: Cost, run: &Run) -> Res
     fit_by(points, scene, cost, true, run)
 }
 
-/// The same, or without a search among extreme exponents.
+/// The same, or without a search among other encodings and extreme exponents.
 pub(super) fn fit_by(
     points: &[DVec3],
     scene: &Scene,
@@ -132,17 +141,33 @@ pub(super) fn fit_by(
     let mut random = Random::new(points.len() as u64);
     let some = random.chosen(points.len(), SOME[usize::from(one_sided)]);
     let samples = Samples::<f32>::new(some.into_iter().map(|i| points[i]));
-    effort.evaluations += mixture.polish(&samples, stage(2, if one_sided { 4 } else { 2 }, samples.len()));
+    effort.evaluations += mixture.polish(&samples, stage(2, if one_sided { 4 } else { 2 }, samples.len())).evaluations;
     // Where hardly any are strewn there is nothing to be left out.
-    let samples = if mixture.strewn > FEW {
+    let near: Vec<usize> = if mixture.strewn > FEW {
         effort.evaluations += points.len();
-        Samples::<f64>::new(near(points, &mixture).into_iter().map(|i| points[i]))
+        near(points, &mixture)
     } else {
-        Samples::<f64>::new(points.iter().copied())
+        (0..points.len()).collect()
     };
-    let (rounds, steps) = if one_sided { (3, 2) } else { (2, 1) };
-    effort.evaluations += mixture.polish(&samples, stage(rounds, steps, points.len()));
-    Ok(Recovered { mixture, effort, one_sided, rough: scene.local.rough, table: None })
+    let (rounds, steps) = if one_sided { (3, 2) } else { (1, 1) };
+    let own = || near.iter().map(|i| points[*i]);
+    effort.evaluations += mixture.polish(&Samples::<f32>::new(own()), stage(rounds, steps, points.len())).evaluations;
+    let (mut weighed, last) = mixture.settle(&Samples::new(own()), stage(1, 1, points.len()));
+    effort.evaluations += last;
+    if near.len() < points.len() {
+        weighed.residuals = spread(&near, &weighed.residuals, points.len(), f64::INFINITY);
+        weighed.chances = spread(&near, &weighed.chances, points.len(), 0.0);
+    }
+    Ok(Recovered { mixture, weighed, effort, one_sided, rough: scene.local.rough, table: None })
+}
+
+/// Values of some of `count` points among those of all.
+fn spread(at: &[usize], values: &[f64], count: usize, other: f64) -> Vec<f64> {
+    let mut all = vec![other; count];
+    for (i, value) in at.iter().zip(values) {
+        all[*i] = *value;
+    }
+    all
 }
 
 /// The points that may be of the surface: of the others the last steps know without asking.

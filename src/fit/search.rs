@@ -1,8 +1,8 @@
 //! The search for a superellipsoid: starts, switches of the encoding, and a rescue.
 //!
 //! ```text
-//!     starts on 100 points, radial residual, robust        all
-//!     again on 300, normal residual                        the best few
+//!     starts on 96 points,  radial residual, robust        all
+//!     again on 320, normal residual                        the best few
 //!     switch: polar axis, dual by 45°                      the best one, if it explains more
 //!     rescue: extreme exponents, frames turned by 45°      if it is still worse than the noise
 //! ```
@@ -51,7 +51,7 @@ const GOOD: f64 = 1.3;
 
 impl<'a> Search<'a> {
     pub(super) fn new(points: &'a [DVec3], local: &'a Local, cost: Cost, run: &'a Run) -> Search<'a> {
-        let (few, more) = if local.view.is_some() { (128, 400) } else { (96, 300) };
+        let (few, more) = if local.view.is_some() { (128, 416) } else { (96, 320) };
         let first = |count: usize| Samples::new(points[..count.min(points.len())].iter().copied());
         Search { points, local, cost, few: first(few), more: first(more), run, evaluations: 0, tried: 0 }
     }
@@ -127,7 +127,8 @@ impl<'a> Search<'a> {
         Ok(current)
     }
 
-    /// With extreme exponents, too, if nothing else fits and it is to be `thorough`.
+    /// In other encodings and with extreme exponents, too, if nothing else fits and it is to be
+    /// `thorough`.
     pub(super) fn search(&mut self, thorough: bool) -> Result<Candidate, Cancelled> {
         if let Some(view) = self.local.view {
             let frame = Frame::one_sided(self.points, view);
@@ -137,8 +138,11 @@ impl<'a> Search<'a> {
         }
         let frame = Frame::complete(self.points);
         let best = self.best_of(frame.starts(&[[0.6, 0.6], [1.2, 1.2]], 0.0), 2)?;
+        if !thorough {
+            return Ok(best);
+        }
         let mut best = self.switched(best, 1)?;
-        if thorough && !self.is_good(&best) {
+        if !self.is_good(&best) {
             let extreme = [[0.25, 0.25], [1.7, 0.4], [0.4, 1.7], [1.7, 1.7]];
             let mut starts = frame.starts(&extreme, 0.0);
             starts.extend(frame.starts(&extreme, std::f64::consts::FRAC_PI_4));

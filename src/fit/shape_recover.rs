@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::check::check_depth;
 use super::error::FitError;
-use super::gielis::Supershaped;
-use super::mixture::{Mixture, Polish};
+use super::gielis::{PARAMETERS, Supershaped};
+use super::mixture::{Mixture, Polish, Weighed};
 use super::random::Random;
 use super::recover::{Effort, Scene, fit};
 use super::samples::Samples;
@@ -22,6 +22,8 @@ pub(super) enum Best {
 
 pub(super) struct ShapeRecovered {
     pub(super) best: Best,
+    /// What a supershape says of the points.
+    pub(super) weighed: Option<Weighed<PARAMETERS>>,
     pub(super) effort: Effort,
     pub(super) one_sided: bool,
     /// Nothing tells the symmetry numbers: they are a guess.
@@ -51,25 +53,27 @@ pub(super) fn recover_shape(
     let mut ranked: Vec<(f64, Mixture<Supershaped>)> = shapes.best.into_iter().map(|m| (0.0, start(m))).collect();
     // All of them are told apart in single precision, again and again.
     let rough = Samples::<f32>::new(points.iter().copied());
-    for (rounds, kept) in [(1, 3), (3, 1)] {
+    for (rounds, kept) in [(1, 3), (2, 1)] {
         for (criterion, mixture) in &mut ranked {
             third.check()?;
-            effort.evaluations += mixture.polish(&rough, how(rounds));
-            let found = mixture.criterion_of(&rough);
+            let polished = mixture.polish(&rough, how(rounds));
+            effort.evaluations += polished.evaluations;
+            let found = mixture.criterion_of(&rough, &polished, settings.cost);
             *criterion = if found.is_nan() { f64::NEG_INFINITY } else { found };
         }
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         ranked.truncate(kept);
     }
     let samples = Samples::<f64>::new(points.iter().copied());
-    let mut best = Best::Quadric(quadric.mixture);
+    let (mut best, mut weighed) = (Best::Quadric(quadric.mixture), None);
     if let Some((_, mut mixture)) = ranked.into_iter().next() {
         third.check()?;
-        effort.evaluations += mixture.polish(&samples, how(2));
+        let (found, last) = mixture.settle(&samples, Polish { steps: 1, ..how(1) });
+        effort.evaluations += last;
         // NaN is no better.
-        if mixture.criterion_of(&samples) > quadric.mixture.criterion_of(&samples) {
-            best = Best::Shape(mixture);
+        if mixture.criterion(found.residuals.iter().copied()) > quadric.criterion() {
+            (best, weighed) = (Best::Shape(mixture), Some(found));
         }
     }
-    Ok(ShapeRecovered { best, effort, one_sided: quadric.one_sided, unclear: shapes.unclear })
+    Ok(ShapeRecovered { best, weighed, effort, one_sided: quadric.one_sided, unclear: shapes.unclear })
 }

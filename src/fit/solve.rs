@@ -72,11 +72,16 @@ impl<E: Number> Problem<'_, E> {
         &self,
         model: &M,
         weights: &[E],
-        area: f64,
-        noise: f64,
+        beside: [f64; 2],
         residuals: &mut [E],
     ) -> Sums<N> {
         let mut sums = pass(model, self.samples, weights, self.cost, residuals);
+        Self::complete(&mut sums, model, beside);
+        sums
+    }
+
+    /// Adds what is minimised besides the squares: the area's term, and the model's penalty.
+    pub(super) fn complete<M: Model<N>, const N: usize>(sums: &mut Sums<N>, model: &M, [area, noise]: [f64; 2]) {
         sums.square += Self::beside(model, area, noise);
         if area > 0.0 {
             let (_, slopes) = model.log_area();
@@ -92,7 +97,6 @@ impl<E: Number> Problem<'_, E> {
                 sums.hessian[i][i] += noise * weight;
             }
         }
-        sums
     }
 
     /// What is minimised besides the squares: the area's term, and the model's penalty.
@@ -115,17 +119,32 @@ impl<E: Number> Problem<'_, E> {
         squares.sum::<f64>() + Self::beside(model, area, noise)
     }
 
-    /// Levenberg–Marquardt from a model; residuals become those of the best one.
+    /// Levenberg–Marquardt from a model; residuals become those of the best one. `beside` are the
+    /// weight of the area's logarithm, and that of the model's penalty.
     pub(super) fn descend<M: Model<N>, const N: usize>(
         &self,
         fitted: &mut Fitted<M, E>,
         weights: &[E],
-        [area, noise]: [f64; 2],
+        beside: [f64; 2],
         steps: usize,
         gain: f64,
     ) {
-        let mut sums: Sums<N> = self.evaluate(&fitted.model, weights, area, noise, &mut fitted.residuals);
+        let sums: Sums<N> = pass(&fitted.model, self.samples, weights, self.cost, &mut fitted.residuals);
         fitted.evaluations += self.samples.len();
+        self.descend_from(sums, fitted, weights, beside, steps, gain);
+    }
+
+    /// The same where the sums of the first pass are known.
+    pub(super) fn descend_from<M: Model<N>, const N: usize>(
+        &self,
+        mut sums: Sums<N>,
+        fitted: &mut Fitted<M, E>,
+        weights: &[E],
+        beside: [f64; 2],
+        steps: usize,
+        gain: f64,
+    ) {
+        Self::complete(&mut sums, &fitted.model, beside);
         let mut trial = vec![E::default(); fitted.residuals.len()];
         let (mut damping, mut growth) = (1e-3, 2.0);
         for left in (0..steps).rev() {
@@ -138,9 +157,9 @@ impl<E: Number> Problem<'_, E> {
             fitted.evaluations += self.samples.len();
             // Nobody asks for the derivatives after the last step.
             let (square, next) = if left == 0 {
-                (self.value(&model, weights, [area, noise], &mut trial), None)
+                (self.value(&model, weights, beside, &mut trial), None)
             } else {
-                let next: Sums<N> = self.evaluate(&model, weights, area, noise, &mut trial);
+                let next: Sums<N> = self.evaluate(&model, weights, beside, &mut trial);
                 (next.square, Some(next))
             };
             let drop = sums.square - square;
@@ -150,7 +169,7 @@ impl<E: Number> Problem<'_, E> {
                 let Some(next) = next else { break };
                 // The area's term makes the sum's zero arbitrary: gains are relative to the
                 // squares.
-                let squares = square.abs().max(area);
+                let squares = square.abs().max(beside[0]);
                 sums = next;
                 damping = f64::max(0.2 * damping, 1e-9);
                 growth = 2.0;
@@ -185,7 +204,7 @@ impl<E: Number> Problem<'_, E> {
 }
 
 /// The damped step, within the limits: what is at a bound and drawn beyond it stays.
-fn step<M: Model<N>, const N: usize>(model: &M, sums: &Sums<N>, damping: f64) -> Option<[f64; N]> {
+pub(super) fn step<M: Model<N>, const N: usize>(model: &M, sums: &Sums<N>, damping: f64) -> Option<[f64; N]> {
     let mut limits = model.limits();
     let groups = model.groups();
     let (mut hessian, mut gradient) = ([[0.0; N]; N], [0.0; N]);

@@ -3,7 +3,7 @@
 use super::cloud::Scaled;
 use super::error::FitError;
 use super::finish::finish;
-use super::mixture::Mixture;
+use super::mixture::{Mixture, Weighed};
 use super::recover::recover;
 use super::result::{Fit, SearchReport, Shape};
 use super::settings::FitSettings;
@@ -69,7 +69,9 @@ pub fn superellipsoid_with(cloud: &PointCloud, settings: &FitSettings, run: &Run
         table: recovered.table.is_some(),
         ..SearchReport::default()
     };
-    finish_quadric(cloud, &scaled, &recovered.mixture, search, &run)
+    // The points of a table are not weighed yet.
+    let known = recovered.table.is_none().then_some(recovered.weighed);
+    finish_quadric(cloud, &scaled, &recovered.mixture, known, search, &run)
 }
 
 /// The fit of a superellipsoid.
@@ -77,10 +79,11 @@ pub(super) fn finish_quadric(
     cloud: &PointCloud,
     scaled: &Scaled,
     mixture: &Mixture<Superquadric>,
+    known: Option<Weighed<PARAMETERS>>,
     search: SearchReport,
     run: &Run,
 ) -> Result<Fit, FitError> {
     let Superquadric { e: [e1, e2], semi_axes, .. } = mixture.model;
     let shape = Shape::Superellipsoid(Superellipsoid::new(semi_axes * scaled.size, e1, e2));
-    finish(cloud, scaled, mixture, shape, NAMES, search, run)
+    finish(cloud, scaled, mixture, known, (shape, NAMES), search, run)
 }

@@ -80,6 +80,12 @@ impl Model<PARAMETERS> for Superquadric {
     }
 }
 
+/// A share over a coordinate: shares vanish at 0 as |x|^p, p ≥ 1.
+#[inline(always)]
+fn over<R: Real>(share: R, x: R, a: f64) -> R {
+    share * x / (x.square() + (1e-10 * a).powi(2))
+}
+
 /// `ln G`, its gradient, and its derivatives by the exponents and the logarithms of the semi-axes.
 #[inline(always)]
 pub(super) fn log_gauge<R: Real, const N: usize>(
@@ -90,15 +96,13 @@ pub(super) fn log_gauge<R: Real, const N: usize>(
 ) -> LogGauge<R> {
     let [x, y, z] = q;
     let inverse = semi_axes.recip();
-    let log = |x: R, k: f64| (x.abs() * k).log2();
-    let (across, vx, vy, inner) = joined(log(x, inverse.x) * (2.0 / e2), log(y, inverse.y) * (2.0 / e2));
-    let (along, wr, wz, outer) = joined(across * (e2 / e1), log(z, inverse.z) * (2.0 / e1));
+    let (u, v, w) = ((x.abs() * inverse.x).log2(), (y.abs() * inverse.y).log2(), (z.abs() * inverse.z).log2());
+    let (across, vx, vy, inner) = joined(u * (2.0 / e2), v * (2.0 / e2));
+    let (along, wr, wz, outer) = joined(across * (e2 / e1), w * (2.0 / e1));
     rows[0] = outer * 0.5;
     rows[1] = wr * inner * 0.5;
     let (sx, sy) = (wr * vx, wr * vy);
     (rows[2], rows[3], rows[4]) = (-sx, -sy, -wz);
-    // Shares vanish at 0 as |x|^p, p ≥ 1.
-    let over = |share: R, x: R, a: f64| share * x / (x.square() + (1e-10 * a).powi(2));
     let gradient = [over(sx, x, semi_axes.x), over(sy, y, semi_axes.y), over(wz, z, semi_axes.z)];
     let radius = (x.square() + y.square() + z.square() + 1e-30).sqrt();
     LogGauge { log2: along * (0.5 * e1), gradient, radius }

@@ -70,10 +70,10 @@ pub fn supershape_with(cloud: &PointCloud, settings: &FitSettings, run: &Run) ->
         symmetry_unclear: found.unclear,
     };
     match found.best {
-        Best::Quadric(mixture) => finish_quadric(cloud, &scaled, &mixture, search, &run),
+        Best::Quadric(mixture) => finish_quadric(cloud, &scaled, &mixture, None, search, &run),
         Best::Shape(mixture) => {
             let shape = Shape::Supershape(leaf(&mixture.model, scaled.size));
-            finish(cloud, &scaled, &mixture, shape, NAMES, search, &run)
+            finish(cloud, &scaled, &mixture, found.weighed, (shape, NAMES), search, &run)
         }
     }
 }

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!     axes         three principal ones and three of the superellipsoid, ranked by their harmonics
-//!     starts       two symmetry numbers an axis, phases and exponents by the radii       120 points
-//!     best five    two of a symmetry number at most                                      360
-//!     extensions   other meridians, untied exponents, twice the number, other phases     120, 360
+//!     starts       two symmetry numbers an axis, phases and exponents by the radii       128 points
+//!     best five    two of a symmetry number at most                                      384
+//!     extensions   other meridians, untied exponents, twice the number, other phases     128, 384
 //! ```
 
 use std::f64::consts::{FRAC_PI_2, LN_2, TAU};
@@ -77,8 +77,8 @@ impl<'a> ShapeSearch<'a> {
         ShapeSearch {
             points,
             rough: local.rough,
-            few: first(120),
-            more: first(360),
+            few: first(128),
+            more: first(384),
             cost,
             start,
             symmetry,
@@ -94,7 +94,7 @@ impl<'a> ShapeSearch<'a> {
         let cost = if !more && self.cost == Cost::Normal { Cost::Radial } else { self.cost };
         let width = if more { 2.5 } else { 3.0 };
         let problem = Problem { samples, cost };
-        let how = |rounds| Robust { rounds, steps: 4, width, area: 0.0, gain: 1e-3 };
+        let how = |rounds| Robust { rounds, steps: 4, width, area: 0.0, gain: 1e-2 };
         let mut start = start;
         let mut left = rounds;
         if let (Start::Rational { tolerance }, false) = (self.start, more) {

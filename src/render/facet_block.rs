@@ -10,7 +10,7 @@
 
 use glam::{Vec3, Vec3A, Vec4};
 
-use super::facet_crease::{Corner, Crease, Meeting, meet_plane};
+use super::facet_crease::{Corner, CreasedCell, Meeting, meet_plane};
 
 /// Cells along a block.
 pub(super) const SIDE: usize = 8;
@@ -56,7 +56,7 @@ pub(super) struct Block {
     /// The slopes of the value a cell, and the value at the block's low corner, in the cells'
     /// order; where there is a crease, NaN and its number.
     facets: Vec<Vec4>,
-    creases: Vec<Crease>,
+    creases: Vec<CreasedCell>,
 }
 
 /// The cells of a block, as their corners' values tell them.
@@ -137,7 +137,7 @@ impl Block {
                     let (value, slopes) = slopes(node);
                     Corner { at: at.into(), value, slopes }
                 };
-                Crease::new(&corners(cell).map(corner), off)
+                CreasedCell::new(&corners(cell).map(corner), off)
             });
             let facet = match crease {
                 Some(crease) if is_crossed || crease.reaches(middle([x, y, z])) => {
@@ -155,7 +155,7 @@ impl Block {
 
     /// What a facet stands for, if it is a crease.
     #[inline]
-    fn crease(&self, facet: Vec4) -> Option<&Crease> {
+    fn crease(&self, facet: Vec4) -> Option<&CreasedCell> {
         if facet.x.is_nan() { self.creases.get(facet.w as usize) } else { None }
     }
 

@@ -38,7 +38,7 @@ pub(super) struct Corner {
 
 /// Some planes, each as its slopes and its value at the block's corner.
 #[derive(Clone, Debug)]
-pub(super) struct Crease {
+pub(super) struct CreasedCell {
     planes: [Vec4; MOST],
     count: u8,
     is_convex: bool,
@@ -54,10 +54,10 @@ pub(super) enum Meeting {
     None,
 }
 
-impl Crease {
+impl CreasedCell {
     /// That of a cell whose values differ from a plane's by `off` at most. `None` if it is none.
-    pub(super) fn new(corners: &[Corner; 8], off: f32) -> Option<Crease> {
-        let mut crease = Crease { planes: [Vec4::ZERO; MOST], count: 0, is_convex: true };
+    pub(super) fn new(corners: &[Corner; 8], off: f32) -> Option<CreasedCell> {
+        let mut crease = CreasedCell { planes: [Vec4::ZERO; MOST], count: 0, is_convex: true };
         let mut sums = [(Vec4::ZERO, Vec3::ZERO); MOST];
         for corner in corners {
             let direction = corner.slopes.normalize_or_zero();
@@ -77,8 +77,9 @@ impl Crease {
         for (plane, sum) in crease.planes.iter_mut().zip(sums).take(usize::from(crease.count)) {
             *plane = sum.0 / plane.w;
         }
-        let off_by = |crease: &Crease| corners.iter().map(|c| (crease.value(c.at) - c.value).abs()).fold(0.0, f32::max);
-        let hollow = Crease { is_convex: false, ..crease.clone() };
+        let off_by =
+            |crease: &CreasedCell| corners.iter().map(|c| (crease.value(c.at) - c.value).abs()).fold(0.0, f32::max);
+        let hollow = CreasedCell { is_convex: false, ..crease.clone() };
         let (as_convex, as_hollow) = (off_by(&crease), off_by(&hollow));
         let best = if as_convex <= as_hollow { crease } else { hollow };
         (best.count > 1 && as_convex.min(as_hollow) < BETTER * off).then_some(best)
@@ -185,10 +186,10 @@ mod tests {
         let planes = [(Vec3::new(-0.6, 0.0, -0.8), 0.75), (Vec3::new(0.8, 0.0, -0.6), -0.1)];
         let at = |p: Vec3, n: usize| (planes[n].0.dot(p) + planes[n].1, planes[n].0);
         let edge = |p: Vec3| if at(p, 0).0 < at(p, 1).0 { at(p, 0) } else { at(p, 1) };
-        let crease = Crease::new(&corners(edge), 0.2).unwrap();
+        let crease = CreasedCell::new(&corners(edge), 0.2).unwrap();
         assert!(crease.is_convex && crease.count == 2);
         let groove = |p: Vec3| if at(p, 0).0 > at(p, 1).0 { at(p, 0) } else { at(p, 1) };
-        let hollow = Crease::new(&corners(groove), 0.2).unwrap();
+        let hollow = CreasedCell::new(&corners(groove), 0.2).unwrap();
         assert!(!hollow.is_convex && hollow.count == 2);
         for i in 0..200 {
             let near = |step: f32| (0.5 + step * i as f32).fract();
@@ -209,7 +210,7 @@ mod tests {
             }
         }
         // One plane is none.
-        assert!(Crease::new(&corners(|p| at(p, 0)), 0.2).is_none());
-        assert!(Crease::new(&corners(|_| (0.0, Vec3::ZERO)), 0.2).is_none());
+        assert!(CreasedCell::new(&corners(|p| at(p, 0)), 0.2).is_none());
+        assert!(CreasedCell::new(&corners(|_| (0.0, Vec3::ZERO)), 0.2).is_none());
     }
 }

@@ -113,3 +113,26 @@ fn symmetry_numbers_by_sections_are_an_option() {
     };
     assert_eq!(numbers, (4.0, 4.0));
 }
+
+/// Clouds of any size that solids may have give solids; others are told to be scaled.
+#[test]
+fn sizes_beyond_those_of_solids_are_told() {
+    for (with, points) in KINDS.into_iter().zip(clouds()) {
+        let some: Vec<DVec3> = points.positions().iter().take(900).copied().collect();
+        let scaled = |scale: f64| {
+            let cloud = PointCloud::new(some.iter().map(|p| *p * scale).collect()).unwrap();
+            with(&cloud, &FitSettings::default(), &Run::default())
+        };
+        let noise = scaled(1.0).unwrap().noise();
+        for scale in [2e-5, 2e6] {
+            let fit = scaled(scale).unwrap();
+            assert!((fit.noise() / scale / noise - 1.0).abs() < 0.01, "{scale}: {} {noise}", fit.noise());
+            assert!(fit.solid().bounds().unwrap().contains(fit.translation()));
+        }
+        for scale in [1e-9, 1e9] {
+            let error = scaled(scale).unwrap_err();
+            assert!(matches!(error, FitError::Extent { .. }), "{scale}: {error}");
+            assert!(error.to_string().contains("scale or move it first"), "{error}");
+        }
+    }
+}
