@@ -22,6 +22,9 @@ use rvachev_field::{Op, Rule, Way, Zone};
 /// Of more operands pairs are not looked at.
 const MANY: usize = 8;
 
+/// Points of a rectangle that keep off lines through its middle and its corners.
+const SHOWN: [[f64; 2]; 5] = [[0.07, -0.13], [0.93, 0.89], [-0.91, 0.97], [-0.94, -0.86], [0.87, -0.96]];
+
 /// Where lines across a face are taken, from one side of a rectangle to the other.
 const LINES: [f64; 5] = [-1.0, -0.41, 0.03, 0.52, 1.0];
 
@@ -42,6 +45,15 @@ impl Program {
         if !(2..=MANY).contains(&operands.len()) {
             return None;
         }
+        // Where it is so it shows at some points, but for those on the very face.
+        let is_inside = (*op == Op::Or) != self.root.negated();
+        let shows = |[x, y]: [f64; 2]| {
+            let p = zone.centre + x * zone.axes.x_axis + y * zone.axes.y_axis;
+            (self.value(p) > 0.0) == is_inside
+        };
+        if !SHOWN.into_iter().all(shows) {
+            return None;
+        }
         let leaf = |edge: &Edge| {
             let program = self.trimmed(self.nodes.to_vec(), self.operands.to_vec(), self.simpler.to_vec(), *edge);
             (program.leaf_count() == 1).then_some(program)
@@ -49,7 +61,7 @@ impl Program {
         let leaves: Vec<Program> = operands.iter().filter_map(leaf).collect();
         let is_flush = |a: &Program, b: &Program| are_flush([a, b], zone, axes, [doubt, tolerance]);
         let any = (0..leaves.len()).any(|i| (0..i).any(|j| is_flush(&leaves[i], &leaves[j])));
-        any.then_some((*op == Op::Or) != self.root.negated())
+        any.then_some(is_inside)
     }
 }
 
@@ -84,7 +96,8 @@ fn are_flush([a, b]: [&Program; 2], zone: &Zone, axes: [DVec3; 2], [doubt, toler
         if a.value(at(-reach)) > 0.0 || a.value(at(reach)) <= 0.0 {
             return false;
         }
-        let t = bracket(&|t| a.value(at(t)), [-reach, reach], 0.0);
+        let (value, ends) = (|t: f64| a.value(at(t)), [-reach, reach]);
+        let t = bracket(&value, ends, ends.map(value), 0.0);
         b.value(at(t - doubt)) > 0.0 && b.value(at(t + doubt)) <= 0.0
     })
 }

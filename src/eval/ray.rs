@@ -273,7 +273,8 @@ fn within_reach(piece: &Piece) -> [f64; 2] {
 
 /// The hit between two distances of which one is inside, where the value is above `doubt`.
 fn hit_between(program: &Program, at: &impl Fn(f64) -> DVec3, ends: [f64; 2], doubt: f64, precision: f64) -> Hit {
-    let t = bracket(&|t| program.value(at(t)) - doubt, ends, precision);
+    let value = |t: f64| program.value(at(t)) - doubt;
+    let t = bracket(&value, ends, ends.map(value), precision);
     hit_at(program, at(t), t)
 }
 
@@ -291,10 +292,9 @@ fn along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -
     program.along(&Segment { ends: [at(t0), at(t1)], slopes, length: t1 - t0 + 4e-16 * t1.abs() })
 }
 
-/// The crossing between `t0` and `t1`. Where rounding has the same sign at both ends it is at one
-/// of them.
-pub(crate) fn bracket(value: &impl Fn(f64) -> f64, ends: [f64; 2], precision: f64) -> f64 {
-    let values = ends.map(value);
+/// The crossing between two ends, from the lower one, with the values there. Where rounding has the
+/// same sign at both ends it is at one of them.
+pub(crate) fn bracket(value: &impl Fn(f64) -> f64, ends: [f64; 2], values: [f64; 2], precision: f64) -> f64 {
     if (values[0] > 0.0) == (values[1] > 0.0) {
         return if values[0].abs() < values[1].abs() { ends[0] } else { ends[1] };
     }

@@ -9,16 +9,22 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec2;
 
 use super::section::{Filling, Section};
+use super::spread::Spread;
 use super::square::{Node, Root, Square};
-use super::tree::{Found, Leaf};
+use super::tree::{Found, Leaf, key};
 use crate::eval::bracket;
 use crate::{Cancelled, Polyline, Run};
 
 /// A chord is halved at most this many times.
 const DEEPEST: u32 = 14;
 
-/// A chord is halved if its middle is off by more, in proportion to the tolerance.
+/// A chord is divided if its middle is off by more, in proportion to the tolerance.
 const CHORD: f64 = 0.7;
+
+/// Into so many parts at once at most, and as if it were off by so much more: its parts are not
+/// equal, as it is divided along the way into the solid.
+const PARTS: f64 = 8.0;
+const UNEVEN: f64 = 1.4;
 
 /// Corners are looked for between points of chords that were halved so often.
 const SMOOTH: u32 = 3;
@@ -49,6 +55,19 @@ struct Piece {
     leaf: usize,
 }
 
+/// A point of a contour, and where the value rises there; zero where it does not.
+#[derive(Clone, Copy)]
+struct End {
+    point: DVec2,
+    slope: DVec2,
+}
+
+/// How far an arc with these ends is from its chord. One whose tangents turn by θ: ½ c tan(θ/4).
+fn bulge([a, b]: [End; 2]) -> f64 {
+    let turn = a.slope.perp_dot(b.slope).atan2(a.slope.dot(b.slope));
+    0.5 * a.point.distance(b.point) * (0.25 * turn.abs()).tan()
+}
+
 /// What a plane is made into contours with.
 pub(super) struct Chains<'a> {
     pub(super) section: &'a Section,
@@ -63,7 +82,8 @@ impl Chains<'_> {
     /// The contours, and how many squares were left undecided.
     pub(super) fn contours(&self, run: &Run) -> Result<(Vec<Polyline>, usize), Cancelled> {
         let (mut unresolved, mut undecided, mut met) = (0, Vec::new(), HashSet::new());
-        let mut next: HashMap<Crossing, Piece> = HashMap::new();
+        let keys = |[a, b]: Crossing| (key(a), key(b));
+        let mut next: HashMap<(u64, u64), Piece, Spread> = HashMap::default();
         let mut starts = Vec::new();
         for (number, leaf) in self.found.leaves.iter().enumerate() {
             if number.is_multiple_of(1024) {
@@ -79,7 +99,7 @@ impl Chains<'_> {
                 (None, _) => undecided.push((node, size)),
             }
             for [from, to] in pieces {
-                next.insert(from, Piece { to, leaf: number });
+                next.insert(keys(from), Piece { to, leaf: number });
                 starts.push(from);
             }
         }
@@ -87,7 +107,7 @@ impl Chains<'_> {
         for start in starts {
             let mut points: Vec<DVec2> = Vec::new();
             let (mut at, mut last) = (start, None);
-            while let Some(Piece { to, leaf }) = next.remove(&at) {
+            while let Some(Piece { to, leaf }) = next.remove(&keys(at)) {
                 if points.len().is_multiple_of(1024) {
                     run.check()?;
                 }
@@ -98,7 +118,10 @@ impl Chains<'_> {
                 last = Some(ends[1]);
                 match leaf.way {
                     Some(way) => unresolved += self.refine(leaf, ends, way, &mut points),
-                    None => points.extend(self.corner(leaf, ends)),
+                    None => {
+                        let left = (ends[1] - ends[0]).perp().normalize_or_zero();
+                        points.extend(self.corner(leaf, ends.map(|point| self.end(leaf, point, left))));
+                    }
                 }
                 at = to;
             }
@@ -164,37 +187,61 @@ impl Chains<'_> {
     fn crossing(&self, leaf: &Leaf, [a, b]: Crossing) -> DVec2 {
         let [from, to] = [a, b].map(|node| self.root.point(node));
         let value = |t: f64| self.section.value(&leaf.filling, from.lerp(to, t));
-        from.lerp(to, bracket(&value, [0.0, 1.0], PRECISE * self.tolerance / from.distance(to)))
+        let ends = [0.0, 1.0];
+        from.lerp(to, bracket(&value, ends, ends.map(value), PRECISE * self.tolerance / from.distance(to)))
     }
 
     /// Points between two, such that chords deviate by less than the tolerance; and how many chords
     /// do not.
-    fn refine(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2, points: &mut Vec<DVec2>) -> usize {
-        let (end, mut far) = (b, 0);
-        let mut pending = vec![(a, b, 0)];
+    fn refine(&self, leaf: &Leaf, ends: [DVec2; 2], way: DVec2, points: &mut Vec<DVec2>) -> usize {
+        let [first, last] = ends.map(|point| self.end(leaf, point, way));
+        let mut far = 0;
+        let mut pending = vec![(first, last, 0)];
         while let Some((a, b, depth)) = pending.pop() {
-            let is_short = depth >= DEEPEST || a.distance(b) <= 0.5 * self.tolerance;
-            let is_on = |t: f64| self.is_on(leaf, [a, b], a.lerp(b, t), CHORD);
+            let chord = [a.point, b.point];
+            let is_short = depth >= DEEPEST || a.point.distance(b.point) <= 0.5 * self.tolerance;
+            let bulge = UNEVEN * bulge([a, b]);
+            let is_on = |t: f64| self.is_on(leaf, chord, a.point.lerp(b.point, t), CHORD);
             // An S has its middle on the chord.
-            let is_straight = is_short || is_on(0.5) && (depth > 0 || is_on(0.25) && is_on(0.75));
+            let is_straight =
+                is_short || bulge <= CHORD * self.tolerance && is_on(0.5) && (depth > 0 || is_on(0.25) && is_on(0.75));
             // What is curved has come nearer by now.
             let corner = if is_straight || depth >= SMOOTH { self.corner(leaf, [a, b]) } else { None };
             match corner {
                 Some(corner) => points.push(corner),
                 None if is_straight => {}
                 None => {
-                    if let Some(p) = self.across(leaf, [a, b], way) {
-                        pending.extend([(p, b, depth + 1), (a, p, depth + 1)]);
+                    let count = (bulge / (CHORD * self.tolerance)).sqrt().ceil().clamp(2.0, PARTS);
+                    let part = |k: u32| {
+                        let from = a.point.lerp(b.point, f64::from(k) / count);
+                        self.across(leaf, from, way, [bulge, a.point.distance(b.point)])
+                    };
+                    let between: Option<Vec<DVec2>> = (1..count as u32).map(part).collect();
+                    if let Some(between) = between {
+                        let mut to = b;
+                        for point in between.into_iter().rev() {
+                            let from = self.end(leaf, point, way);
+                            pending.push((from, to, depth + count.log2() as u32));
+                            to = from;
+                        }
+                        pending.push((a, to, depth + count.log2() as u32));
                         continue;
                     }
                     far += 1;
                 }
             }
-            if b != end {
-                points.push(b);
+            if b.point != last.point {
+                points.push(b.point);
             }
         }
         far
+    }
+
+    /// A point of a contour, where the solid is entered along `way`.
+    fn end(&self, leaf: &Leaf, point: DVec2, way: DVec2) -> End {
+        // A little outside: inside, a face beside the plane may be nearer.
+        let aside = 0.1 * SHARP * self.tolerance * way;
+        End { point, slope: self.section.gradient(&leaf.filling, point - aside).normalize_or_zero() }
     }
 
     /// The value at a point that is in a square, or beside it: there the contour may go on for a
@@ -213,35 +260,41 @@ impl Chains<'_> {
         self.value(leaf, p + left) > 0.0 && self.value(leaf, p - left) <= 0.0
     }
 
-    /// The point of the contour beside the middle of a chord, along a way that the solid is entered
-    /// by.
-    fn across(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2) -> Option<DVec2> {
-        let middle = a.midpoint(b);
-        let value = |t: f64| self.value(leaf, middle + t * way);
-        let inside = value(0.0) > 0.0;
-        let (outwards, most) = (if inside { -1.0 } else { 1.0 }, a.distance(b));
-        let is_beyond = |reach: f64| (value(outwards * reach) > 0.0) != inside;
+    /// The point of the contour beside one of a chord, along a way that the solid is entered by:
+    /// looked for as far as the chord may be off first, then as far as it is long.
+    fn across(&self, leaf: &Leaf, from: DVec2, way: DVec2, [near, most]: [f64; 2]) -> Option<DVec2> {
+        let value = |t: f64| self.value(leaf, from + t * way);
+        let own = value(0.0);
+        let outwards = if own > 0.0 { -1.0 } else { 1.0 };
         // In the square the solid is entered once along the way; beyond it may be anything.
-        let border = leaf.square.exit(middle, outwards * way);
-        let mut reach = 0.02 * most;
-        while !is_beyond(reach) {
+        let border = leaf.square.exit(from, outwards * way);
+        let mut reach = near.clamp(0.02 * most, most);
+        let beyond = loop {
+            let there = value(outwards * reach);
+            if (there > 0.0) != (own > 0.0) {
+                break there;
+            }
             if reach >= most {
                 return None;
             }
             let next = (3.0 * reach).min(most);
             reach = if reach < border && border < next { border } else { next };
+        };
+        let (mut ends, mut values) = ([0.0, outwards * reach], [own, beyond]);
+        if ends[1] < 0.0 {
+            ends.reverse();
+            values.reverse();
         }
-        let there = outwards * reach;
-        Some(middle + bracket(&value, [there.min(0.0), there.max(0.0)], PRECISE * self.tolerance) * way)
+        Some(from + bracket(&value, ends, values, PRECISE * self.tolerance) * way)
     }
 
     /// The corner between two points of a contour, if its tangents there meet in one and are all of
     /// it.
-    fn corner(&self, leaf: &Leaf, [a, b]: [DVec2; 2]) -> Option<DVec2> {
-        let left = (b - a).perp().try_normalize()?;
-        // A little outside: inside, a face beside the plane may be nearer.
-        let aside = 0.1 * SHARP * self.tolerance * left;
-        let [of_a, of_b] = [a, b].map(|p| self.section.gradient(&leaf.filling, p - aside).normalize_or_zero());
+    fn corner(
+        &self,
+        leaf: &Leaf,
+        [End { point: a, slope: of_a }, End { point: b, slope: of_b }]: [End; 2],
+    ) -> Option<DVec2> {
         if of_a.perp_dot(of_b).abs() < TURN {
             return None;
         }

@@ -9,6 +9,7 @@
 
 mod chain;
 mod section;
+mod spread;
 mod square;
 mod tree;
 

@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use rvachev_num::Meter;
 
 use super::section::{Filling, Section};
+use super::spread::Spread;
 use super::square::{Node, Root, Square};
 use crate::eval::Program;
 use crate::{Cancelled, Run};
@@ -44,7 +45,7 @@ pub(super) struct Leaf {
 pub(super) struct Found {
     pub(super) leaves: Vec<Leaf>,
     /// Which corners are inside, by their keys.
-    inside: Vec<(u64, bool)>,
+    inside: HashMap<u64, bool, Spread>,
     /// How many squares were divided.
     divided: usize,
 }
@@ -52,12 +53,12 @@ pub(super) struct Found {
 impl Found {
     /// Whether a corner is inside; `None` of what is no corner.
     pub(super) fn is_inside(&self, node: Node) -> Option<bool> {
-        self.inside.binary_search_by_key(&key(node), |(key, _)| *key).ok().map(|at| self.inside[at].1)
+        self.inside.get(&key(node)).copied()
     }
 }
 
 /// A corner as one number.
-fn key([x, y]: Node) -> u64 {
+pub(super) fn key([x, y]: Node) -> u64 {
     u64::from(x) << 32 | u64::from(y)
 }
 
@@ -126,10 +127,6 @@ impl Tree<'_> {
                 found[plane].inside.extend(own.inside);
             }
         }
-        found.par_iter_mut().for_each(|found| {
-            found.inside.par_sort_unstable();
-            found.inside.dedup_by_key(|(key, _)| *key);
-        });
         Ok(found)
     }
 
