@@ -342,8 +342,12 @@ fn parts_of_a_workshop() {
 /// How much the radius of a conical hole grows by length, by its text.
 fn slope(leaf: &PartLeaf) -> f64 {
     let numbers: Vec<f64> = leaf.text().split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
-    let [wide, narrow, length] = numbers[..] else { panic!("{}", leaf.text()) };
-    0.5 * f64::abs(wide - narrow) / length
+    match numbers[..] {
+        [wide, narrow, length] => 0.5 * f64::abs(wide - narrow) / length,
+        // Down to a point.
+        [wide, length] => 0.5 * wide / length,
+        _ => panic!("{}", leaf.text()),
+    }
 }
 
 /// All that are there, with what is asked of them.
