@@ -177,7 +177,7 @@
 //!
 //! | method | input | IoU | leaves | holes | code | time |
 //! |---|---|---|---|---|---|---|
-//! | [`part`](crate::fit::part()) | meshes of 14 CAD parts, of as few as 12 facets | 0.96 to 1.00 | 1 to 10, and some 34 of one | cut leaves | yes | 0.1 to 2 s |
+//! | [`part`](crate::fit::part()) | meshes of 14 CAD parts, of as few as 12 facets | 0.96 to 1.00 | 1 to 8, and some 34 of one | cut leaves | yes | 0.1 to 2 s |
 //! | [`part_of_points`](crate::fit::part_of_points()) | clouds of 4000 points, 0.2 % noise, with normals or without | 0.99 in the middle | some 10 | cut leaves | yes | 1 to 2 s |
 //! | Marching-Primitives (W. Liu et al., 2023) | grids of signed distances | 0.93 to 0.98 | 7 to 77 superquadrics | none | no | 1 to 21 s |
 //! | SuperFit (2026) | meshes | 0.90 | 24 superquadrics | none: "purely additive" | no | minutes |

@@ -12,6 +12,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::outline::Outline;
+use super::straighten::homes;
 use crate::fit::linear;
 
 /// Sides that are an arc, at the least.
@@ -29,8 +30,9 @@ const FINE: f64 = 0.05;
 const MOST: f64 = 6.0;
 const LEAST: f64 = 0.2;
 
-/// Arcs that turn by more, in radians, are cut in two: a side has half a turn at the most.
-const LONG: f64 = 3.0;
+/// Arcs that turn by more, in radians, are cut in two: the nearer to half a turn, the farther the
+/// middle of an arc is off if its radius is, between the same ends; here it is twice as far.
+const LONG: f64 = 2.5;
 
 /// Sides that are one arc.
 struct Found {
@@ -53,11 +55,7 @@ pub(super) fn arched(ring: &[DVec2], polygon: &[DVec2], tolerance: f64, are_exac
     if count <= FEWEST {
         return None;
     }
-    let nearest = |corner: &DVec2| {
-        let away = |i: &usize| ring[*i].distance_squared(*corner);
-        (0..ring.len()).min_by(|i, j| away(i).total_cmp(&away(j))).unwrap_or(0)
-    };
-    let homes: Vec<usize> = polygon.iter().map(nearest).collect();
+    let homes = homes(ring, polygon);
     let mut found: Vec<Found> = (0..count)
         .filter_map(|from| {
             let longest = (FEWEST..count).take_while(|sides| turned(polygon, from, *sides) < MOST).last()?;

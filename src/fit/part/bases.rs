@@ -95,15 +95,17 @@ pub(super) fn bases(ring: &[DVec2], grain: Grain) -> Vec<Base> {
     if circular(&even, centre) < CIRCLE {
         return found;
     }
-    found.extend(regular(&polygon, size));
-    found.extend(rounded(&ring, &even, size));
+    let simple: Vec<(f64, Base)> =
+        [regular(&polygon, size), rounded(&ring, &even, size)].into_iter().flatten().collect();
+    // What is as near as the outline leaves nothing to arcs.
+    let is_exact = simple.iter().any(|(off, _)| *off < grain.tolerance);
+    found.extend(simple.into_iter().map(|(_, base)| base));
     let is_regular = found.iter().any(|base| matches!(base, Base::Regular { .. }));
-    let is_plain = found.is_empty() && polygon.len() > 4;
-    if is_plain {
+    if found.is_empty() && polygon.len() > 4 {
         found.extend(supershape(&even, centre, size));
     }
     let most = if found.is_empty() { MOST } else { FEW };
-    if is_plain {
+    if !is_exact && polygon.len() > 4 {
         let outline = arched(&ring, &polygon, grain.tolerance, grain.short == 0.0);
         let is_simple = |outline: &Outline| outline.corners.len() <= MOST && !crosses(&outline.corners);
         found.extend(outline.filter(is_simple).map(Base::Outline));
@@ -161,8 +163,8 @@ fn circular(points: &[DVec2], centre: DVec2) -> f64 {
     off / radius
 }
 
-/// The regular polygon of a polygon's corners.
-fn regular(polygon: &[DVec2], size: f64) -> Option<Base> {
+/// The regular polygon of a polygon's corners, and how far it is off at most.
+fn regular(polygon: &[DVec2], size: f64) -> Option<(f64, Base)> {
     let sides = polygon.len();
     if !SIDES.contains(&sides) || sides == 4 {
         return None;
@@ -179,11 +181,12 @@ fn regular(polygon: &[DVec2], size: f64) -> Option<Base> {
     let angle = first + (0..sides).map(turn).sum::<f64>() / sides as f64;
     let off = |k: usize| (centre + radius * DVec2::from_angle(angle + sector * k as f64)).distance(polygon[k]);
     let most = (0..sides).map(off).fold(0.0, f64::max);
-    (most < OFF * size).then_some(Base::Regular { centre, angle, sides: sides as u32, radius })
+    (most < OFF * size).then_some((most, Base::Regular { centre, angle, sides: sides as u32, radius }))
 }
 
-/// The rectangle with rounded corners whose sides are along most of a ring.
-fn rounded(ring: &[DVec2], even: &[DVec2], size: f64) -> Option<Base> {
+/// The rectangle with rounded corners whose sides are along most of a ring, and how far it is off at
+/// most.
+fn rounded(ring: &[DVec2], even: &[DVec2], size: f64) -> Option<(f64, Base)> {
     // Sides at right angles to each other agree in four times their angles, and those of an arc
     // cancel.
     let side = |k: usize| ring[(k + 1) % ring.len()] - ring[k];
@@ -205,7 +208,7 @@ fn rounded(ring: &[DVec2], even: &[DVec2], size: f64) -> Option<Base> {
     let mean = even.iter().map(|p| off(p).abs()).sum::<f64>() / even.len().max(1) as f64;
     let most = even.iter().map(|p| off(p).abs()).fold(0.0, f64::max);
     let fits = mean < 0.5 * OFF * size && most < 3.0 * OFF * size;
-    fits.then(|| Base::Rounded { centre: turn.rotate(middle), angle, size: sides, radius })
+    fits.then(|| (most, Base::Rounded { centre: turn.rotate(middle), angle, size: sides, radius }))
 }
 
 /// The radius of Gielis' curve at an angle.
@@ -358,6 +361,26 @@ mod tests {
         let Some(Base::Rounded { centre, angle, size, radius }) = found.first() else { panic!("{found:?}") };
         assert!(centre.length() < 1e-3 && (angle - 0.4).abs() < 1e-3, "{found:?}");
         assert!((*size - DVec2::new(0.3, 0.1)).length() < 2e-3 && (radius - 0.05).abs() < 1e-3, "{found:?}");
+    }
+
+    /// Three corners round and one square: a rounded rectangle nearly, an outline with arcs exactly.
+    #[test]
+    fn arcs_are_there_beside_what_fits_nearly() {
+        let round = |x: f64, y: f64, from: f64| {
+            (0..=8).map(move |k| {
+                let angle = from + PI * f64::from(k) / 16.0;
+                DVec2::new(x, y) + 0.05 * DVec2::from_angle(angle)
+            })
+        };
+        let ring: Vec<DVec2> = round(0.2, 0.1, 0.0)
+            .chain(round(-0.2, 0.1, 0.5 * PI))
+            .chain(round(-0.2, -0.1, PI))
+            .chain([DVec2::new(0.25, -0.15)])
+            .collect();
+        let found = bases(&ring, FINE);
+        assert!(matches!(found[0], Base::Rounded { .. }), "{found:?}");
+        let has_arcs = |base: &Base| matches!(base, Base::Outline(outline) if outline.arc_count() == 3);
+        assert!(found.iter().any(has_arcs), "{found:?}");
     }
 
     #[test]

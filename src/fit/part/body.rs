@@ -34,8 +34,9 @@ enum Inside {
 
 impl Body {
     pub(super) fn of_mesh(mesh: &Mesh, run: &Run) -> Result<Body, FitError> {
-        let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, None, run)?;
-        Ok(Body { bounds: mesh.bounds(), topology: topology::of_mesh(mesh, run)?, inside: Inside::Mesh(leaf) })
+        let [to_index, to_check] = run.stages([0.5, 0.5]);
+        let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, None, &to_index)?;
+        Ok(Body { bounds: mesh.bounds(), topology: topology::of_mesh(mesh, &to_check)?, inside: Inside::Mesh(leaf) })
     }
 
     /// Of the points that samples of a cloud are; nothing if they face inwards.

@@ -35,6 +35,9 @@ const PAIRS: usize = 8;
 /// Facets that are square to an axis, by this cosine, are of nothing that is round about it.
 const ACROSS: f64 = 0.9997;
 
+/// Hypotheses that are judged between two looks at whether the run is cancelled.
+const AT_ONCE: usize = 256;
+
 /// Hypotheses of a round that are adjusted in vain before it ends.
 const FAILURES: usize = 120;
 
@@ -165,7 +168,10 @@ impl<'a> Detector<'a> {
         let mut columns: Vec<Columns> = frames.into_iter().map(|frame| self.columns(frame)).collect();
         let mut heap = BinaryHeap::new();
         let guesses = self.guesses(&seeds, &columns);
-        for mut guess in guesses {
+        for (i, mut guess) in guesses.into_iter().enumerate() {
+            if i % AT_ONCE == 0 {
+                run.check()?;
+            }
             guess.share = columns[guess.frame].explain(&guess.shape, guess.tolerance, &mut self.buffer);
             if guess.share >= self.limits.share {
                 heap.push(Ranked { merit: guess.merit(), guess });

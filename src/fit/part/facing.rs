@@ -68,26 +68,25 @@ pub(super) fn outward(
     let mut moments = vec![DVec3::ZERO; count];
     let mut square = 0.0;
     for round in 0..ROUNDS {
-        run.check()?;
+        run.report(round as f64 / ROUNDS as f64);
         let t = round as f64 / (ROUNDS - 1) as f64;
         square = (apart * (WIDTHS[0] + t * (WIDTHS[1] - WIDTHS[0]))).powi(2);
         let ask = |at: &[DVec3], what: What, moments: &[DVec3]| {
-            sums(at, &sources, &columns(moments.iter().copied()), what, square)
+            sums(at, &sources, &columns(moments.iter().copied()), what, square, run)
         };
         let numbers = |moments: &[DVec3]| ask(&places, What::Number, moments);
-        let off: Vec<DVec3> = numbers(&moments).iter().map(|w| DVec3::X * (TAU - w.x)).collect();
-        let down = ask(&places, What::Pull, &off);
-        let along = numbers(&down);
+        let off: Vec<DVec3> = numbers(&moments)?.iter().map(|w| DVec3::X * (TAU - w.x)).collect();
+        let down = ask(&places, What::Pull, &off)?;
+        let along = numbers(&down)?;
         let [length, growth] = [&down, &along].map(|all| all.iter().map(|v| v.length_squared()).sum::<f64>());
         let step = length / growth.max(f64::MIN_POSITIVE);
         moments.iter_mut().zip(&down).for_each(|(moment, down)| *moment += step * *down);
-        let falls = ask(&places, What::Fall, &moments);
+        let falls = ask(&places, What::Fall, &moments)?;
         for (moment, fall) in moments.iter_mut().zip(falls) {
             *moment = moment.length() * fall.normalize_or_zero();
         }
     }
-    run.check()?;
-    let falls = sums(points, &sources, &columns(moments.iter().copied()), What::Fall, square);
+    let falls = sums(points, &sources, &columns(moments.iter().copied()), What::Fall, square, run)?;
     Ok(falls.into_iter().map(DVec3::normalize_or_zero).collect())
 }
 
@@ -103,10 +102,20 @@ enum What {
     Fall,
 }
 
-fn sums(at: &[DVec3], sources: &Columns, moments: &Columns, what: What, square: f64) -> Vec<DVec3> {
-    let chunk = |at: &[DVec3]| dispatch!(Level::new(), simd => sums_on(simd, at, sources, moments, what, square));
-    let chunks: Vec<Vec<DVec3>> = at.par_chunks(CHUNK).map(chunk).collect();
-    chunks.concat()
+fn sums(
+    at: &[DVec3],
+    sources: &Columns,
+    moments: &Columns,
+    what: What,
+    square: f64,
+    run: &Run,
+) -> Result<Vec<DVec3>, Cancelled> {
+    let chunk = |at: &[DVec3]| {
+        run.check()?;
+        Ok(dispatch!(Level::new(), simd => sums_on(simd, at, sources, moments, what, square)))
+    };
+    let chunks: Vec<Vec<DVec3>> = at.par_chunks(CHUNK).map(chunk).collect::<Result<_, Cancelled>>()?;
+    Ok(chunks.concat())
 }
 
 #[inline(always)]

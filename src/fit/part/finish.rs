@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::super::deviations::Deviation;
@@ -85,7 +85,16 @@ fn named(leaves: &[(bool, Leaf)], meant: Vec<Meant>, shares: &[f64], seen: &[f64
         *count += 1;
         let name = if *adds { format!("{kind} {count}") } else { format!("cut {kind} {count}") };
         snaps.extend(changes.iter().map(|change| Snap::of(named.len(), change)));
-        named.push(PartLeaf { adds: *adds, leaf, name, text: String::new(), surface: *surface, seen: *seen });
+        let text = String::new();
+        named.push(PartLeaf {
+            adds: *adds,
+            leaf,
+            name,
+            tilt: DAffine3::IDENTITY,
+            text,
+            surface: *surface,
+            seen: *seen,
+        });
     }
     (named, snaps)
 }

@@ -12,16 +12,19 @@
 //! lengthened to a round number, as an end in a face would leave a skin there, or not, by the last
 //! digit.
 
-use glam::DVec3;
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::leaf::Leaf;
-use super::measures::Measure;
+use super::measures::{Measure, tilt};
 use super::round::Scale;
 use super::through::{BEYOND, ends_in_the_open};
 use crate::{Cancelled, Run};
 
 /// How far from a principal axis a leaf may be turned to be along it, in radians, at the most.
 const TURNED: f64 = 2e-3;
+
+/// Turns by less, in radians, are rounding.
+const LEAST_TURN: f64 = 1e-9;
 
 /// What vertices leave open of a length at the least, in diagonals, and what is of a leaf's
 /// surface.
@@ -31,15 +34,32 @@ const NEAR: f64 = 3e-3;
 /// What is this part of what is open means nothing.
 const DIGITS: f64 = 0.1;
 
-/// A number that was made round, or a cut that was lengthened.
+/// A number that was made round, a cut that was lengthened, or a leaf that was turned.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Change {
     pub(super) leaf: usize,
-    /// Which of its numbers.
-    pub(super) nth: usize,
+    pub(super) of: Changed,
     pub(super) measure: Measure,
     pub(super) from: f64,
     pub(super) to: f64,
+}
+
+/// What was changed of a leaf.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Changed {
+    /// Which of its numbers.
+    Number(usize),
+    /// What turns it back.
+    Turn(DAffine3),
+}
+
+/// The numbers that a leaf has instead of its own, where they differ.
+pub(super) fn changes(leaf: usize, old: &Leaf, numbers: &[f64]) -> Vec<Change> {
+    let pairs = old.measures().into_iter().zip(numbers).enumerate();
+    let changed = pairs.filter(|(_, ((_, from), to))| from != *to);
+    changed
+        .map(|(nth, ((measure, from), to))| Change { leaf, of: Changed::Number(nth), measure, from, to: *to })
+        .collect()
 }
 
 /// A leaf in length units, with what was changed of it.
@@ -70,17 +90,12 @@ pub(super) fn intended(
     let turned = |leaf: &Leaf, open: f64| (open / leaf.reach().length()).min(TURNED);
     let mut meant: Leaves =
         leaves.iter().zip(&open).map(|((adds, leaf), open)| (*adds, leaf.aligned(turned(leaf, *open)))).collect();
-    let within = |measure: Measure, leaf: usize| match measure {
-        Measure::Diameter | Measure::Size => 2.0 * open[leaf],
-        _ => open[leaf],
-    };
-    let all = |leaves: &[(bool, Leaf)]| -> Vec<(f64, f64)> {
-        let of = |(i, (_, leaf)): (usize, &(bool, Leaf))| {
-            leaf.measures().into_iter().map(|(measure, v)| (v, within(measure, i))).collect::<Vec<_>>()
-        };
-        leaves.iter().enumerate().flat_map(of).collect()
-    };
-    let scale = Scale::of(&all(&meant), size);
+    // How far each number may be moved, by leaves.
+    let within: Vec<Vec<f64>> = (meant.iter().zip(&open))
+        .map(|((_, leaf), open)| leaf.leverages().into_iter().map(|by| by * open).collect())
+        .collect();
+    let all = meant.iter().flat_map(|(_, leaf)| leaf.measures()).map(|(_, v)| v);
+    let scale = Scale::of(&all.zip(within.iter().flatten().copied()).collect::<Vec<_>>(), size);
     let mut numbers: Vec<Vec<f64>> = Vec::new();
     let mut loose = Vec::new();
     // Cuts before one are as they will be: what two of them share is left to one at the least.
@@ -88,11 +103,11 @@ pub(super) fn intended(
     for (i, (adds, leaf)) in meant.iter().enumerate() {
         run.check()?;
         let ends = if *adds { Vec::new() } else { ends_in_the_open(&current, i, size, 0.0) };
-        let number = |(nth, (measure, v)): (usize, (Measure, f64))| {
+        let number = |(nth, (_, v)): (usize, (Measure, f64))| {
             if let Some(end) = ends.iter().find(|end| end.nth == nth) {
                 return scale.beyond(end.face, BEYOND * size, end.up);
             }
-            let within = within(measure, i);
+            let within = within[i][nth];
             scale.round(v, within).unwrap_or_else(|| {
                 loose.push(Loose { leaf: i, nth, within });
                 v
@@ -103,17 +118,20 @@ pub(super) fn intended(
         numbers.push(own);
     }
     make_equal(&mut numbers, loose);
-    let mut changes = Vec::new();
-    for (i, ((_, leaf), numbers)) in meant.iter_mut().zip(&numbers).enumerate() {
-        let Some(made) = leaf.made_of(numbers) else { continue };
-        for (nth, ((measure, from), to)) in leaf.measures().into_iter().zip(numbers).enumerate() {
-            if from != *to {
-                changes.push(Change { leaf: i, nth, measure, from, to: *to });
-            }
+    let mut all = Vec::new();
+    for (i, (((_, leaf), numbers), (_, found))) in meant.iter_mut().zip(&numbers).zip(leaves).enumerate() {
+        let back = tilt(found, leaf);
+        let off = back.matrix3 - DMat3::IDENTITY;
+        let angle = (0.5 * off.to_cols_array().iter().map(|x| x * x).sum::<f64>()).sqrt();
+        if angle > LEAST_TURN {
+            let of = Changed::Turn(back);
+            all.push(Change { leaf: i, of, measure: Measure::Turn, from: angle.to_degrees(), to: 0.0 });
         }
+        let Some(made) = leaf.made_of(numbers) else { continue };
+        all.extend(changes(i, leaf, numbers));
         *leaf = made;
     }
-    Ok((meant, changes))
+    Ok((meant, all))
 }
 
 /// A number that is not round.
@@ -166,7 +184,7 @@ mod tests {
     #[test]
     fn numbers_are_round_and_holes_go_through() {
         let plate =
-            Leaf::cuboid(glam::DMat3::IDENTITY, [DVec3::new(-30.0003, -20.0, 0.0), DVec3::new(30.0, 19.9998, 8.0001)]);
+            Leaf::cuboid(DMat3::IDENTITY, [DVec3::new(-30.0003, -20.0, 0.0), DVec3::new(30.0, 19.9998, 8.0001)]);
         let hole = Leaf::cylinder(-DVec3::Z, DVec3::new(10.0002, 5.0, 0.0), 3.4999, [-8.0, 1.8]);
         let pocket = Leaf::cylinder(DVec3::X, DVec3::new(-30.0, 0.0, 4.0), 2.0, [-3.0, 12.0001]);
         let (meant, changes) =
@@ -176,7 +194,15 @@ mod tests {
         let hole = numbers(1);
         assert_eq!([hole[0], hole[1], hole[4]], [10.0, 5.0, 7.0]);
         assert!(hole[2] <= -0.7 && hole[2] > -2.0 && hole[3] >= 8.7 && hole[3] < 10.0, "{hole:?}");
-        assert_eq!(meant[1].1.rotation, glam::DMat3::IDENTITY);
+        assert_eq!(meant[1].1.rotation, DMat3::IDENTITY);
+        // Hardly turned is not turned, which is told and can be taken back.
+        let turn = DMat3::from_rotation_z(1e-5);
+        let block = Leaf::cuboid(turn, [DVec3::new(-30.0, 4.0, 0.0), DVec3::new(30.0, 9.0, 8.0)]);
+        let (upright, told) = intended(&[(true, block)], &[], 70.0, &Run::default()).unwrap();
+        let change = told.iter().find(|change| change.measure == Measure::Turn).expect("it was turned");
+        let Changed::Turn(back) = change.of else { panic!("{change:?}") };
+        assert!(upright[0].1.rotation == DMat3::IDENTITY && (change.from.to_radians() - 1e-5).abs() < 1e-9);
+        assert!((upright[0].1.turned_by(&back).rotation - turn).to_cols_array().iter().all(|off| off.abs() < 1e-9));
         // Numbers that are not round are equal at least, and short.
         let pins = [12.34567, -12.34571].map(|x| (true, Leaf::sphere(DVec3::new(x, 0.0, 0.0), 1.0)));
         let [a, b] = [0, 1].map(|i| intended(&pins, &[], 70.0, &Run::default()).unwrap().0[i].1.centre.x);

@@ -284,7 +284,7 @@ impl Leaf {
     /// The signed distances of its faces, each as if it went on without an end: of a cylinder those
     /// of its side and of its ends.
     pub(in crate::fit) fn faces(&self, p: DVec3) -> Vec<f64> {
-        self.shape.faces(self.local(p), 2.0 * self.reach().z)
+        self.shape.faces(self.local(p), self.height())
     }
 
     /// The direction in which the distance grows fastest, about a point near the surface.

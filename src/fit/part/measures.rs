@@ -3,12 +3,12 @@
 //! What has two ends is told by them, what is round by its diameter; coordinates are along the
 //! leaf's own axes.
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 
 use super::leaf::{Leaf, Shape};
 use super::outline::Outline;
 use crate::field::Field;
-use crate::{Cone, Cuboid, Cylinder, Prism, Rectangle, Sphere, Superellipsoid, Superpolygon, Torus};
+use crate::{Cone, Cuboid, Cylinder, Prism, Rectangle, Sphere, Superellipsoid, Superpolygon, Supershape, Torus};
 
 /// What a number of a leaf is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -18,6 +18,8 @@ pub(super) enum Measure {
     Diameter,
     Radius,
     Size,
+    /// How far it is turned from the part's axes.
+    Turn,
 }
 
 impl Measure {
@@ -29,6 +31,7 @@ impl Measure {
             Measure::Diameter => "diameter",
             Measure::Radius => "radius",
             Measure::Size => "size",
+            Measure::Turn => "turn",
         }
     }
 }
@@ -41,6 +44,11 @@ pub(super) fn tidy(v: f64) -> f64 {
 /// From z to x, and from z to y: quarter turns about y and about x.
 pub(super) const TO_X: DMat3 = DMat3::from_cols(DVec3::NEG_Z, DVec3::Y, DVec3::X);
 pub(super) const TO_Y: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
+
+/// From end to end of a supershape: its scale is that of the curves, whose radii are not 1.
+pub(super) fn extent(s: &Supershape) -> DVec3 {
+    s.bounds().size()
+}
 
 /// The ends along z of what is extruded or turned, first of all its numbers: x, y, low, high.
 fn posed(at: DVec3, height: f64) -> Vec<(Measure, f64)> {
@@ -68,14 +76,45 @@ impl Leaf {
             Shape::Prism(s) => round(s.radius(), s.height()),
             Shape::RoundedRectangle { base, height } => 0.5 * base.size.extend(*height),
             Shape::Profile { outline, height } => outline.reach().extend(0.5 * height),
-            // The curve's own radius is 1 to some.
-            Shape::Supershape { base, height } => round(2.0 * base.radius(), *height),
+            Shape::Supershape { base, height } => {
+                let bounds = base.bounds();
+                bounds.min.abs().max(bounds.max.abs()).truncate().extend(0.5 * height)
+            }
             Shape::Superellipsoid(s) => s.semi_axes(),
             Shape::Supersolid(s) => {
                 let bounds = s.bounds();
                 bounds.min.abs().max(bounds.max.abs())
             }
         }
+    }
+
+    /// How high it is along its z axis, of what is extruded or turned; 0 of other shapes.
+    pub(super) fn height(&self) -> f64 {
+        match &self.shape {
+            Shape::Cylinder(s) => s.height,
+            Shape::Cone(s) => s.height,
+            Shape::Prism(s) => s.height(),
+            Shape::RoundedRectangle { height, .. }
+            | Shape::Profile { height, .. }
+            | Shape::Supershape { height, .. } => *height,
+            _ => 0.0,
+        }
+    }
+
+    /// By how much more than the surface each of its numbers may be off: a diameter twice as much,
+    /// the radius of a flat arc many times as much as the arc's middle.
+    pub(super) fn leverages(&self) -> Vec<f64> {
+        let of = |(measure, _): (Measure, f64)| match measure {
+            Measure::Diameter | Measure::Size => 2.0,
+            _ => 1.0,
+        };
+        let mut all: Vec<f64> = self.measures().into_iter().map(of).collect();
+        if let Shape::Profile { outline, .. } = &self.shape {
+            let radii = all.len() - outline.arc_count();
+            all.truncate(radii);
+            all.extend(outline.leverages());
+        }
+        all
     }
 
     /// Its numbers, in an order that [`made_of`](Leaf::made_of) knows.
@@ -111,7 +150,7 @@ impl Leaf {
             }
             Shape::Supershape { base, height } => [posed(at, *height), vec![(Measure::Radius, base.radius())]].concat(),
             Shape::Superellipsoid(s) => [places(at), sizes(s.semi_axes())].concat(),
-            Shape::Supersolid(s) => [places(at), sizes(s.scale())].concat(),
+            Shape::Supersolid(s) => [places(at), sizes(0.5 * extent(s))].concat(),
         }
     }
 
@@ -187,10 +226,19 @@ impl Leaf {
             }
             Shape::Supersolid(s) => {
                 let [x, y, z, a, b, c] = *numbers.first_chunk::<6>()?;
-                (Shape::Supersolid(s.scaled(0.5 * DVec3::new(a, b, c))), DVec3::new(x, y, z))
+                (Shape::Supersolid(s.scaled(s.scale() * DVec3::new(a, b, c) / extent(s))), DVec3::new(x, y, z))
             }
         };
         Some(Leaf { shape, rotation: self.rotation, centre: self.rotation * at })
+    }
+
+    /// The same leaf, turned and moved.
+    pub(super) fn turned_by(&self, by: &DAffine3) -> Leaf {
+        Leaf {
+            shape: self.shape.clone(),
+            rotation: by.matrix3 * self.rotation,
+            centre: by.transform_point3(self.centre),
+        }
     }
 
     /// The same leaf, described along the part's axes where it lies along them to within a part of
@@ -224,10 +272,25 @@ impl Leaf {
     }
 }
 
+/// What turns a leaf that was aligned back to where it was, about its centre.
+pub(super) fn tilt(leaf: &Leaf, aligned: &Leaf) -> DAffine3 {
+    let turn = if aligned.rotation == leaf.rotation {
+        DMat3::IDENTITY
+    } else if leaf.is_round() {
+        let [from, to] = [aligned, leaf].map(|leaf| leaf.rotation.z_axis);
+        DMat3::from_quat(DQuat::from_rotation_arc(from.dot(to).signum() * from, to))
+    } else {
+        // A box may have other names for its axes.
+        leaf.rotation * DMat3::from_cols_array(&leaf.rotation.to_cols_array().map(f64::round)).transpose()
+    };
+    DAffine3 { matrix3: turn, translation: leaf.centre - turn * leaf.centre }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::leaf_tests::leaves;
     use super::*;
+    use crate::Gielis;
 
     fn assert_same(a: &Leaf, b: &Leaf) {
         for i in 0..400_u32 {
@@ -235,6 +298,18 @@ mod tests {
             let off = (a.distance(p) - b.distance(p)).abs();
             assert!(off < 1e-9, "{} at {p}: {off}, {:?}", a.kind(), b.rotation);
         }
+    }
+
+    /// Its sizes are from end to end, which vertices tell; the scale of its curves is none of them.
+    #[test]
+    fn sizes_of_supershapes_are_those_of_the_solid() {
+        let star = Supershape::new(Gielis::new(5.0, 2.0, 4.0, 4.0), Gielis::circle()).scaled([0.2, 0.3, 0.25]);
+        let leaf = Leaf { shape: Shape::Supersolid(star), rotation: DMat3::IDENTITY, centre: DVec3::ZERO };
+        let numbers: Vec<f64> = leaf.measures().into_iter().map(|(_, v)| v).collect();
+        let size = leaf.solid().bounds().unwrap().size();
+        assert!((DVec3::from_slice(&numbers[3..]) - size).abs().max_element() < 1e-9, "{numbers:?}, {size}");
+        let wide = leaf.made_of(&[0.0, 0.0, 0.0, 2.0 * numbers[3], numbers[4], numbers[5]]).unwrap();
+        assert!((wide.solid().bounds().unwrap().size().x - 2.0 * size.x).abs() < 1e-9);
     }
 
     #[test]
@@ -252,6 +327,11 @@ mod tests {
                 leaf.rotation = super::super::leaf::along(axis);
                 let aligned = leaf.aligned(1e-6);
                 assert_same(&leaf, &aligned);
+                // A little off, and turned back.
+                let off = DMat3::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 1e-3);
+                let tilted = Leaf { rotation: off * leaf.rotation, ..leaf.clone() };
+                let aligned = tilted.aligned(0.01);
+                assert_same(&tilted, &aligned.turned_by(&tilt(&tilted, &aligned)));
                 let solid = aligned.solid();
                 let p = leaf.centre + DVec3::new(0.03, -0.05, 0.02);
                 assert_eq!(solid.contains(p).unwrap(), leaf.contains(p), "{} along {axis}", leaf.kind());

@@ -103,6 +103,12 @@ impl Outline {
         self.radii.iter().filter(|radius| **radius != 0.0).count()
     }
 
+    /// By how much more than its middle the radius of each arc between the same ends may be off:
+    /// more of flat arcs, less of those that go around for long.
+    pub(super) fn leverages(&self) -> impl Iterator<Item = f64> + '_ {
+        self.arcs().map(|arc| (arc.chord / (arc.radius - arc.chord)).clamp(0.1, 200.0))
+    }
+
     pub(in crate::fit) fn contains(&self, p: DVec2) -> bool {
         let mut inside = false;
         for ([a, b], _) in self.sides() {
@@ -187,6 +193,21 @@ mod tests {
         {
             assert_eq!(outline.contains(p), inside, "{p}");
             assert_eq!(profile.contains(p).unwrap(), inside, "{p}");
+        }
+    }
+
+    /// The middle of an arc is off by so much less, or more, than its radius.
+    #[test]
+    fn flat_arcs_leave_their_radii_open() {
+        for radius in [0.6, 1.0, 4.0] {
+            let of = |radius: f64| {
+                let corners = [[0.0, 0.0], [1.0, 0.0], [0.5, 2.0]].map(DVec2::from_array).to_vec();
+                Outline { corners, radii: vec![radius, 0.0, 0.0] }
+            };
+            let middle = |outline: &Outline| -outline.distance(DVec2::new(0.5, 0.0));
+            let by = of(radius).leverages().next().unwrap();
+            let moved = (middle(&of(radius + 1e-6)) - middle(&of(radius))).abs();
+            assert!((1e-6 / moved / by - 1.0).abs() < 1e-2, "{radius}: {by}, {moved}");
         }
     }
 

@@ -32,6 +32,8 @@ pub(super) struct Pool {
     pub(super) candidates: Vec<Candidate>,
     /// What a parameter costs.
     pub(super) per_parameter: f64,
+    /// What a leaf costs beside its own, in parameters.
+    per_leaf: f64,
     families: u32,
     /// By kind and least size: sizes and numbers of classes.
     classes: HashMap<(&'static str, i64), Vec<(Leaf, u32)>>,
@@ -50,10 +52,23 @@ impl Pool {
     }
 
     pub(super) fn push(&mut self, leaf: Leaf, bits: Bits, may: [bool; 2], family: Option<u32>) -> u32 {
-        let price = self.per_parameter * leaf.parameters() as f64;
+        let price = self.price(&leaf);
         let (another, class) = (price.min(ANOTHER * self.per_parameter), self.class(&leaf));
         self.candidates.push(Candidate { leaf, bits, may, family, price, another, class });
         (self.candidates.len() - 1) as u32
+    }
+
+    fn price(&self, leaf: &Leaf) -> f64 {
+        self.per_parameter * (leaf.parameters() as f64 + self.per_leaf)
+    }
+
+    /// From now on a leaf costs so much beside its parameters, in parameters; one more of equal
+    /// ones costs what it did.
+    pub(super) fn charge(&mut self, per_leaf: f64) {
+        self.per_leaf = per_leaf;
+        for i in 0..self.candidates.len() {
+            self.candidates[i].price = self.price(&self.candidates[i].leaf);
+        }
     }
 
     fn class(&mut self, leaf: &Leaf) -> u32 {

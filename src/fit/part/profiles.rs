@@ -69,20 +69,24 @@ pub(super) fn propose(
         Kind::Voxels => Grain { tolerance: 0.003, short: 0.018 },
         Kind::Scan => Grain { tolerance: f64::max(0.004, 1.5 * samples.noise), short: 0.035 },
     };
-    for (frame, planes) in directions(samples, regions) {
-        run.check()?;
-        for prismatic in prismatics(body, samples, &frame, &planes) {
+    let all = directions(samples, regions);
+    for (i, (frame, planes)) in all.iter().enumerate() {
+        run.report(i as f64 / all.len() as f64);
+        for prismatic in prismatics(body, samples, frame, planes, run)? {
             run.check()?;
             let adds = prismatic.ring.area > 0.0;
             for base in bases(&prismatic.ring.points, grain) {
-                push(pool, &frame, &base, (adds, prismatic.slabs), &planes, queries, kinds);
+                push(pool, frame, &base, (adds, prismatic.slabs), planes, queries, kinds);
             }
             if adds {
-                for bay in bays(&polygon(&prismatic.ring.points, grain), BEYOND) {
+                let corners = polygon(&prismatic.ring.points, grain);
+                // Where corners were cut off they are not among the points.
+                let ring = if grain.short == 0.0 { &prismatic.ring.points } else { &corners };
+                for bay in bays(ring, &corners, BEYOND) {
                     run.check()?;
                     let cuts = if area(&bay) > WIDE { bases(&bay, grain) } else { Vec::new() };
                     for base in cuts.iter().filter(|base| !matches!(base, Base::Supershape { .. })) {
-                        push(pool, &frame, base, (false, prismatic.slabs), &planes, queries, kinds);
+                        push(pool, frame, base, (false, prismatic.slabs), planes, queries, kinds);
                     }
                 }
             }
@@ -122,13 +126,20 @@ fn directions(samples: &Samples, regions: &Regions) -> Vec<(DMat3, Vec<f64>)> {
 }
 
 /// The rings of the slabs; such as go on in the next slab once.
-fn prismatics(body: &Body, samples: &Samples, frame: &DMat3, planes: &[f64]) -> Vec<Prismatic> {
+fn prismatics(
+    body: &Body,
+    samples: &Samples,
+    frame: &DMat3,
+    planes: &[f64],
+    run: &Run,
+) -> Result<Vec<Prismatic>, Cancelled> {
     let mut slabs: Vec<usize> = (0..planes.len().saturating_sub(1)).collect();
     slabs.sort_by(|i, j| (planes[j + 1] - planes[*j]).total_cmp(&(planes[i + 1] - planes[*i])));
     slabs.truncate(SLABS);
     slabs.sort_unstable();
     let mut found: Vec<Prismatic> = Vec::new();
     for slab in slabs {
+        run.check()?;
         for ring in body.section(samples, frame, 0.5 * (planes[slab] + planes[slab + 1])) {
             if ring.area.abs() < LEAST {
                 continue;
@@ -145,7 +156,7 @@ fn prismatics(body: &Body, samples: &Samples, frame: &DMat3, planes: &[f64]) -> 
             }
         }
     }
-    found
+    Ok(found)
 }
 
 /// Where a profile may end: at the slabs that its ring is in, then farther and farther out.

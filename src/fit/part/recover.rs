@@ -12,9 +12,8 @@ use super::body::Body;
 use super::boxes::Grid;
 use super::candidates::propose;
 use super::finish::finish;
-use super::intent::{Meant, intended};
-use super::leaf::Leaf;
-use super::model::{Model, Step};
+use super::intent::Meant;
+use super::model::Model;
 use super::offsets::grid;
 use super::pool::Pool;
 use super::queries::{Queries, Strip, Told};
@@ -24,10 +23,10 @@ use super::result::PartFit;
 use super::samples::{Kind, Samples};
 use super::select::Selector;
 use super::settings::PartSettings;
-use super::snap::snapped;
-use super::through::lengthened;
+use super::snapping::{Snapped, exact, opened, steps};
 use super::times::{Clock, PartTimes};
-use super::{profiles, residual, superellipsoids, topology};
+use super::topology::{Topologies, mended};
+use super::{profiles, residual, superellipsoids};
 use crate::field::COORDINATE_LIMIT;
 use crate::fit::grid::extent;
 use crate::geom::{Mesh, PointCloud};
@@ -71,7 +70,9 @@ const VERTICES: usize = 3000;
 
 /// Recovers a part from a mesh.
 pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<PartFit, FitError> {
-    let [to_index, to_rest] = run.stages([0.05, 0.95]);
+    // Of a mesh of many triangles most of the time goes here.
+    let large = (mesh.triangles().len() as f64 / 2e6).min(0.5);
+    let [to_index, to_sample, to_rest] = run.stages([0.05 + large, 0.01 + 0.5 * large, 0.95]);
     let points: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
     if mesh.triangles().len() < 4 {
         return Err(FitError::TooFew { kind: "part", points: points.len(), parameters: 4, needed: 4 });
@@ -79,7 +80,7 @@ pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result
     check(&points)?;
     let mut clock = Clock::start();
     let body = Body::of_mesh(mesh, &to_index)?;
-    let mut samples = Samples::of_mesh(mesh, settings.seed, run)?;
+    let mut samples = Samples::of_mesh(mesh, settings.seed, &to_sample)?;
     samples.noise = settings.noise / samples.size;
     let vertices = vertices(mesh, &samples);
     let hollow = FitError::Hollow { of: "triangles", count: mesh.triangles().len() };
@@ -95,13 +96,14 @@ pub(super) fn recover_points(cloud: &PointCloud, settings: &PartSettings, run: &
     }
     check(points)?;
     let mut clock = Clock::start();
-    let samples = Samples::of_cloud(cloud, settings.noise, settings.seed, run)?;
+    let [to_sample, to_rest] = run.stages([if cloud.normals().is_none() { 0.3 } else { 0.02 }, 0.7]);
+    let samples = Samples::of_cloud(cloud, settings.noise, settings.seed, &to_sample)?;
     run.check()?;
     let [low, high] = extent(points);
     let hollow = FitError::Hollow { of: "points", count: points.len() };
     let Some(body) = Body::of_points(&samples, Bounds::new(low, high)) else { return Err(hollow) };
     let times = PartTimes { sampling: clock.lap(), ..PartTimes::default() };
-    recovered(&body, samples, &[], hollow, settings, times, run)
+    recovered(&body, samples, &[], hollow, settings, times, &to_rest)
 }
 
 /// The part that samples are of.
@@ -115,7 +117,8 @@ fn recovered(
     run: &Run,
 ) -> Result<PartFit, FitError> {
     let mut clock = Clock::start();
-    let [to_detect, to_label, to_select, to_settle, to_finish] = run.stages([0.1, 0.2, 0.3, 0.2, 0.2]);
+    let [to_detect, to_label, to_propose, to_search, to_select, to_settle, to_finish] =
+        run.stages([0.1, 0.2, 0.1, 0.25, 0.15, 0.1, 0.1]);
     let regions = detect(&samples, settings.seed, &to_detect)?;
     times.detection = clock.lap();
     to_detect.report(1.0);
@@ -125,9 +128,9 @@ fn recovered(
     if queries.inside.is_none() {
         return Err(hollow);
     }
-    let mut selector = selector(body, &samples, &regions, &queries, settings, &to_select)?;
+    let mut selector = selector(body, &samples, &regions, &queries, settings, &to_propose)?;
     times.proposals = clock.lap();
-    let model = selector.select(Vec::new(), &to_select)?;
+    let model = selector.search(&to_search)?;
     times.selection = clock.lap();
     let model = moved(&mut selector, model, &samples, &to_select)?;
     times.refinement = clock.lap();
@@ -156,30 +159,21 @@ fn recovered(
         }
     }
     let Samples { centre, size, .. } = samples;
-    let mut meant = BTreeMap::new();
-    if settings.snap && !vertices.is_empty() {
-        let laid = snapped(&selector.leaves(&model.steps), vertices, &to_select)?;
-        let outward: Vec<(bool, Leaf)> = laid.iter().map(|(adds, leaf)| (*adds, leaf.outward(centre, size))).collect();
-        let vertices: Vec<DVec3> = vertices.iter().map(|p| centre + size * *p).collect();
-        let (outward, changes) = intended(&outward, &vertices, size, &to_select)?;
-        let inward = outward.iter().map(|(adds, leaf)| (*adds, leaf.inward(centre, size))).collect();
-        let steps = steps(&mut selector, &model, inward);
-        for (i, (step, (_, leaf))) in steps.iter().zip(outward).enumerate() {
-            let own = changes.iter().filter(|change| change.leaf == i).copied().collect();
-            meant.insert(step.which, Meant { leaf, changes: own });
+    let mut topologies = Topologies::new(&samples, body.topology, &to_settle);
+    let snapped = match settings.snap {
+        true if vertices.is_empty() => {
+            opened(&mut selector, model, SKIN.max(3.0 * samples.noise), &samples, &to_select)?
         }
-        model = selector.model(steps);
-        // What the exact lengths leave nothing to do for.
-        selector.drop_one(&mut model);
-    } else if settings.snap {
-        model = opened(&mut selector, model, SKIN.max(3.0 * samples.noise), &to_select)?;
-    }
+        true => exact(&mut selector, model, vertices, &samples, &mut topologies, &to_select)?,
+        false => Snapped { model, meant: BTreeMap::new() },
+    };
+    let Snapped { model, mut meant } = snapped;
     times.snapping = clock.lap();
     to_select.report(1.0);
     if model.steps.is_empty() {
         return Err(FitError::NoSurface { inliers: 0.0 });
     }
-    let (model, topology) = topology::mended(&selector, model, body.topology, &samples, &to_settle)?;
+    let (model, topology) = mended(&selector, model, &mut topologies)?;
     times.topology = clock.lap();
     to_settle.report(1.0);
     let leaves = selector.leaves(&model.steps);
@@ -297,35 +291,6 @@ fn selector<'a>(
         }
     }
     Ok(Selector { pool, queries, grids, cancel: run.cancel.clone() })
-}
-
-/// The steps of a model with other leaves in their places.
-fn steps(selector: &mut Selector<'_>, model: &Model, leaves: Vec<(bool, Leaf)>) -> Vec<Step> {
-    let mut steps = model.steps.clone();
-    for (step, (_, leaf)) in steps.iter_mut().zip(leaves) {
-        let may = selector.pool.candidates[step.which as usize].may;
-        step.which = selector.pool.add(leaf, selector.queries, may, None);
-    }
-    steps
-}
-
-/// The model with cuts that go through but for a skin, where that is not for the worse.
-fn opened(selector: &mut Selector<'_>, mut model: Model, skin: f64, run: &Run) -> Result<Model, Cancelled> {
-    for i in 0..model.steps.len() {
-        run.check()?;
-        let leaves = selector.leaves(&model.steps);
-        let longer = if leaves[i].0 { None } else { lengthened(&leaves, i, 1.0, skin) };
-        if let Some(longer) = longer {
-            let may = selector.pool.candidates[model.steps[i].which as usize].may;
-            let mut steps = model.steps.clone();
-            steps[i].which = selector.pool.add(longer, selector.queries, may, None);
-            let next = selector.model(steps);
-            if next.cost < model.cost + ALLOWED_RISE {
-                model = next;
-            }
-        }
-    }
-    Ok(model)
 }
 
 /// The model with its leaves moved onto the surface, where that is not for the worse.

@@ -113,10 +113,13 @@ fn on_axis(v: f64, size: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use glam::DAffine3;
+
     use super::*;
 
     fn leaf(adds: bool, name: &str, leaf: Leaf) -> PartLeaf {
-        PartLeaf { adds, leaf, name: name.to_owned(), text: String::new(), surface: 0.1, seen: 1.0 }
+        let (name, text) = (name.to_owned(), String::new());
+        PartLeaf { adds, leaf, name, tilt: DAffine3::IDENTITY, text, surface: 0.1, seen: 1.0 }
     }
 
     fn cut(name: &str, x: f64, y: f64) -> PartLeaf {

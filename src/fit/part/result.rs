@@ -1,9 +1,9 @@
 //! What was recovered of a part.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use super::super::deviations::Deviation;
-use super::intent::Change;
+use super::intent::{Change, Changed};
 use super::leaf::Leaf;
 use super::patterns::Pattern;
 use super::repeated::repeated;
@@ -40,6 +40,8 @@ pub struct PartLeaf {
     pub(super) adds: bool,
     pub(super) leaf: Leaf,
     pub(super) name: String,
+    /// What turns it from the part's axes, if that it was turned to these was refused.
+    pub(super) tilt: DAffine3,
     /// In words.
     pub(super) text: String,
     pub(super) surface: f64,
@@ -68,36 +70,37 @@ pub struct Unexplained {
     pub missing: bool,
 }
 
-/// A number of a leaf that was changed to what it is likely to be meant to be.
+/// A number of a leaf, or its turn, that was changed to what it is likely to be meant to be.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Snap {
     /// Which of the [leaves](PartFit::leaves).
     pub leaf: usize,
-    /// What the number is: "diameter", "radius" or "size"; or "x", "y" or "z": where the leaf is,
-    /// or ends, along its own axes.
+    /// What the number is: "diameter", "radius" or "size"; "x", "y" or "z": where the leaf is, or
+    /// ends, along its own axes; or "turn": the angle by which it was off the part's axes.
     pub measure: &'static str,
-    /// What was found, in length units.
+    /// What was found, in length units; of a turn in degrees.
     pub found: f64,
     /// What it is instead.
     pub meant: f64,
     #[cfg_attr(feature = "serde", serde(skip))]
-    nth: usize,
+    of: Changed,
 }
 
 impl Snap {
     pub(super) fn of(leaf: usize, change: &Change) -> Snap {
-        let Change { nth, measure, from, to, .. } = *change;
-        Snap { leaf, measure: measure.name(), found: from, meant: to, nth }
+        let Change { of, measure, from, to, .. } = *change;
+        Snap { leaf, measure: measure.name(), found: from, meant: to, of }
     }
 }
 
 impl PartFit {
     /// The numbers that were changed: to round ones, in millimetres or in binary fractions of an
     /// inch, whichever makes more of the part's numbers short, by no more than the vertices leave
-    /// open; and cuts that ended in the open, or in the face that they go through, which were
-    /// lengthened. Of a part from points, cuts that go through but for a skin are lengthened
-    /// without an entry.
+    /// open; cuts that ended in the open, or in the face that they go through, or of a part from
+    /// points but for a skin, which were lengthened; and leaves that were a little off the part's
+    /// axes, which were turned to them. Numbers are not changed, and leaves that they leave nothing
+    /// to do for not left out, where that would take genus or shells farther from the input's.
     #[must_use]
     pub fn snaps(&self) -> &[Snap] {
         &self.snaps
@@ -122,10 +125,7 @@ impl PartFit {
     pub fn without_snaps(&self, snaps: &[usize]) -> PartFit {
         let mut fit = self.clone();
         for snap in snaps.iter().filter_map(|n| self.snaps.get(*n)) {
-            let leaf = &mut fit.leaves[snap.leaf].leaf;
-            let mut numbers: Vec<f64> = leaf.measures().into_iter().map(|(_, v)| v).collect();
-            numbers[snap.nth] = snap.found;
-            *leaf = leaf.made_of(&numbers).unwrap_or_else(|| leaf.clone());
+            fit.leaves[snap.leaf].refuse(snap);
         }
         let mut place = 0..;
         fit.snaps.retain(|_| place.next().is_none_or(|n| !snaps.contains(&n)));
@@ -163,7 +163,7 @@ impl PartFit {
 
     /// How many numbers the tree has: 3 of a half-space, 4 of a sphere, 7 of a cylinder or a torus,
     /// 8 of a cone, 9 of a box or a prism, 10 of a rounded rectangle, 11 of a superellipsoid, 12 of
-    /// a supershape, 7 and 2 a corner of a profile. Of a [pattern](PartFit::patterns) it is those
+    /// a supershape, 17 of a solid one, 7 and 2 a corner and 1 an arc of a profile. Of a [pattern](PartFit::patterns) it is those
     /// of one leaf and of the [layout](super::Layout::parameters).
     #[must_use]
     pub fn parameters(&self) -> usize {
@@ -250,6 +250,17 @@ impl PartFit {
 }
 
 impl PartLeaf {
+    /// Takes a change back; the numbers are along the axes that it was turned to.
+    fn refuse(&mut self, snap: &Snap) {
+        let upright = self.leaf.turned_by(&self.tilt.inverse());
+        let mut numbers: Vec<f64> = upright.measures().into_iter().map(|(_, v)| v).collect();
+        match snap.of {
+            Changed::Number(nth) => numbers[nth] = snap.found,
+            Changed::Turn(tilt) => self.tilt = tilt,
+        }
+        self.leaf = upright.made_of(&numbers).unwrap_or(upright).turned_by(&self.tilt);
+    }
+
     /// Whether it is cut from what is before it; else it is added.
     #[must_use]
     pub fn is_cut(&self) -> bool {

@@ -10,10 +10,10 @@ use super::select::Selector;
 use crate::{CancelToken, Run};
 
 /// What a parameter costs.
-const PRICE: f64 = 1.5e-4;
+pub(super) const PRICE: f64 = 1.5e-4;
 
 /// A part that is told by steps, asked in its box and about the surfaces of its leaves.
-fn asked(truth: &[(bool, Leaf)], half: DVec3) -> Queries {
+pub(super) fn asked(truth: &[(bool, Leaf)], half: DVec3) -> Queries {
     let is_inside =
         |p: DVec3| truth.iter().fold(false, |inside, (adds, leaf)| if leaf.contains(p) { *adds } else { inside });
     // Samples of the surface: from points in the box along the gradient of each leaf.

@@ -33,6 +33,15 @@ pub(super) fn corners(ring: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     (0..count).map(|k| (first + k) % count).filter(|i| kept[*i]).map(|i| ring[i]).collect()
 }
 
+/// The points of a ring that are nearest to the corners of its polygon.
+pub(super) fn homes(ring: &[DVec2], polygon: &[DVec2]) -> Vec<usize> {
+    let nearest = |corner: &DVec2| {
+        let away = |i: &usize| ring[*i].distance_squared(*corner);
+        (0..ring.len()).min_by(|i, j| away(i).total_cmp(&away(j))).unwrap_or(0)
+    };
+    polygon.iter().map(nearest).collect()
+}
+
 /// How far a point is from a segment.
 pub(super) fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let (along, from) = (b - a, p - a);

@@ -5,6 +5,8 @@
 //!     |_________|~      volume, but handles and shells. What the mesh has tells whether they are meant.
 //! ```
 
+use std::collections::HashMap;
+
 use super::super::error::FitError;
 use super::leaf::Leaf;
 use super::model::{Model, Step};
@@ -27,7 +29,7 @@ const TRIED: usize = 6;
 
 /// What a mesh has.
 pub(super) fn of_mesh(mesh: &Mesh, run: &Run) -> Result<Topology, FitError> {
-    let report = mesh.check_with(&quiet(run))?;
+    let report = mesh.check_with(run)?;
     Ok(Topology { genus: report.genus, shells: report.shells })
 }
 
@@ -58,6 +60,37 @@ pub(super) fn tree(leaves: impl IntoIterator<Item = (bool, Solid)>) -> Option<So
     joined(tree, adds, run)
 }
 
+/// The topologies of trees of a selector's leaves, each found once.
+pub(super) struct Topologies<'a> {
+    samples: &'a Samples,
+    /// That of the input.
+    meant: Topology,
+    run: &'a Run,
+    known: HashMap<(Vec<Step>, u32), Topology>,
+}
+
+impl<'a> Topologies<'a> {
+    pub(super) fn new(samples: &'a Samples, meant: Topology, run: &'a Run) -> Topologies<'a> {
+        Topologies { samples, meant, run, known: HashMap::new() }
+    }
+
+    fn of(&mut self, selector: &Selector<'_>, model: &Model, cells: u32) -> Result<Topology, FitError> {
+        let key = (model.steps.clone(), cells);
+        if let Some(known) = self.known.get(&key) {
+            return Ok(*known);
+        }
+        let found = of_tree(&selector.leaves(&model.steps), self.samples, cells, self.run)?;
+        self.known.insert(key, found);
+        Ok(found)
+    }
+
+    /// How far a model's genus and shells are from those of the input; nothing if one is not known.
+    pub(super) fn off(&mut self, selector: &Selector<'_>, model: &Model) -> Result<Option<u64>, FitError> {
+        // Of points nothing is known that could be meant.
+        Ok(if self.meant.genus.is_none() { None } else { apart(self.of(selector, model, CELLS[0])?, self.meant) })
+    }
+}
+
 fn of_tree(leaves: &[(bool, Leaf)], samples: &Samples, cells: u32, run: &Run) -> Result<Topology, FitError> {
     let outward = leaves.iter().map(|(adds, leaf)| (*adds, leaf.outward(samples.centre, samples.size).solid()));
     let Some(solid) = tree(outward) else { return Ok(Topology::default()) };
@@ -84,18 +117,16 @@ fn apart(a: Topology, b: Topology) -> Option<u64> {
 pub(super) fn mended(
     selector: &Selector<'_>,
     mut model: Model,
-    meant: Topology,
-    samples: &Samples,
-    run: &Run,
+    topologies: &mut Topologies<'_>,
 ) -> Result<(Model, Topology), FitError> {
-    let leaves = |steps: &[Step]| selector.leaves(steps);
-    let mut found = of_tree(&leaves(&model.steps), samples, CELLS[0], run)?;
+    let meant = topologies.meant;
+    let mut found = topologies.of(selector, &model, CELLS[0])?;
     // Of points nothing is known that could be meant.
     if meant.genus.is_none() || apart(found, meant) == Some(0) {
         return Ok((model, found));
     }
     // It may be that a wall or a hole fell between the cells.
-    let finer = of_tree(&leaves(&model.steps), samples, CELLS[1], run)?;
+    let finer = topologies.of(selector, &model, CELLS[1])?;
     if apart(finer, meant) == Some(0) {
         return Ok((model, finer));
     }
@@ -117,7 +148,7 @@ pub(super) fn mended(
                 break;
             }
             tried += 1;
-            let topology = of_tree(&leaves(&next.steps), samples, CELLS[0], run)?;
+            let topology = topologies.of(selector, &next, CELLS[0])?;
             if apart(topology, meant).is_some_and(|next| next < off) {
                 better = Some((next, topology));
                 break;

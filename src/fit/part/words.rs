@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::leaf::{Leaf, Shape};
+use super::measures::extent;
 use super::patterns::{Layout, Pattern};
 use super::result::PartLeaf;
 use super::through::{End, ends_in_the_open};
@@ -46,7 +47,7 @@ fn joined(lengths: impl IntoIterator<Item = f64>) -> String {
 }
 
 fn added(leaf: &Leaf) -> String {
-    let height = length(2.0 * leaf.reach().z);
+    let height = length(leaf.height());
     match &leaf.shape {
         Shape::HalfSpace => "all on one side of a plane".to_owned(),
         Shape::Box(s) => format!("block, {}", joined(s.size.to_array())),
@@ -127,7 +128,7 @@ fn widths(bottom: f64, top: f64) -> String {
 }
 
 fn supersolid(s: &Supershape) -> String {
-    let sizes = joined((2.0 * s.scale()).to_array());
+    let sizes = joined(extent(s).to_array());
     format!("supershape of {} arms and meridians of {}, {sizes}", length(s.equator().m), length(s.meridian().m))
 }
 
@@ -152,7 +153,7 @@ fn outline(leaf: &Leaf) -> String {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DMat3, DVec3};
+    use glam::{DAffine3, DMat3, DVec3};
 
     use super::*;
 
@@ -175,6 +176,7 @@ mod tests {
             adds,
             leaf,
             name: String::new(),
+            tilt: DAffine3::IDENTITY,
             text: String::new(),
             surface: 0.1,
             seen: 1.0,

@@ -63,10 +63,12 @@ impl Tree {
             tasks.push(Task { node: 0, from: 0, to: items.len(), depth: 0 });
         }
         while let Some(Task { node, from, to, depth }) = tasks.pop() {
-            let part = &mut items[from..to];
-            if part.len() > 1024 {
+            if to - from > 1024 {
                 run.check()?;
+                // What is beyond is done.
+                run.report(1.0 - to as f64 / items.len() as f64);
             }
+            let part = &mut items[from..to];
             let whole = part.iter().fold(EMPTY, |all, (_, own)| union(all, *own));
             let [low, high] = whole;
             if part.len() <= LEAF {

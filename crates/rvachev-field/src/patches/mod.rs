@@ -95,6 +95,21 @@ pub struct Patches {
     hash: u64,
 }
 
+/// So many items are gone through between two looks at whether the run is cancelled.
+const AT_ONCE: usize = 1 << 14;
+
+/// The items, unless the run is stopped meanwhile.
+fn gathered<T>(items: impl Iterator<Item = T>, run: &Run) -> Result<Vec<T>, Cancelled> {
+    let mut all = Vec::with_capacity(items.size_hint().0);
+    for (i, item) in items.enumerate() {
+        if i.is_multiple_of(AT_ONCE) {
+            run.check()?;
+        }
+        all.push(item);
+    }
+    Ok(all)
+}
+
 impl Patches {
     /// Builds the hierarchy over patches. Those with a coordinate that is not a number, or is
     /// infinite, are left out.
@@ -107,15 +122,16 @@ impl Patches {
         let chosen = || kept.iter().map(|i| &patches[*i as usize]);
         let bounds = chosen().fold(Bounds::EMPTY, |all, patch| all.union(&patch.bounds()));
         let frame = Frame::new(&bounds);
-        let boxes: Vec<_> = chosen().map(|patch| frame.boxed(patch)).collect();
+        let boxes = gathered(chosen().map(|patch| frame.boxed(patch)), run)?;
         let Tree { nodes, order } = Tree::new(&boxes, run)?;
-        let numbers: Vec<u32> = order.iter().map(|i| kept[*i as usize]).collect();
+        let numbers = gathered(order.iter().map(|i| kept[*i as usize]), run)?;
         let sorted = || numbers.iter().map(|i| &patches[*i as usize]);
-        let faces: Vec<Face> = sorted().map(|patch| Face::new(patch, &frame)).collect();
-        let sides: Vec<Sides> = sorted().map(|patch| Sides::new(patch, &frame)).collect();
+        let faces = gathered(sorted().map(|patch| Face::new(patch, &frame)), run)?;
+        let sides = gathered(sorted().map(|patch| Sides::new(patch, &frame)), run)?;
         let is_flat = chosen().all(Patch::is_flat);
         let quadratics =
-            if is_flat { Vec::new() } else { sorted().map(|patch| Quadratic::new(patch, &frame)).collect() };
+            if is_flat { Vec::new() } else { gathered(sorted().map(|patch| Quadratic::new(patch, &frame)), run)? };
+        run.check()?;
         let hash = face::hash(&frame, &faces, &sides, &quadratics);
         Ok(Patches { frame, bounds, nodes, faces, sides, quadratics, numbers, hash })
     }

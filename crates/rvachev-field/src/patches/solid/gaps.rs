@@ -149,7 +149,7 @@ mod tests {
                 [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]
             })
             .collect();
-        open_edges(&positions, &triangles)
+        open_edges(&positions, &triangles, &Run::default()).unwrap()
     }
 
     #[test]

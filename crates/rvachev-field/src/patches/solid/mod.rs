@@ -28,7 +28,7 @@ use rvachev_num::{Cancelled, Run};
 use self::gaps::Gaps;
 use self::rim::{Membrane, Rim};
 use self::winding::Winding;
-use super::{Foot, Patch, Patches, SurfaceDistance};
+use super::{Foot, Patch, Patches, SurfaceDistance, gathered};
 use crate::Bounds;
 
 /// The solid that triangles enclose.
@@ -78,7 +78,8 @@ pub struct OpenEdges {
 impl OpenEdges {
     /// Of triangles, by positions and their numbers. Vertices at one position are one vertex.
     pub fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> OpenEdges {
-        let edges = rim::open_edges(positions, triangles);
+        // A run that nobody else holds is not cancelled.
+        let edges = rim::open_edges(positions, triangles, &Run::default()).unwrap_or_default();
         let length = |edge: &rim::OpenEdge| f64::from(edge.missing) * edge.ends[0].distance(edge.ends[1]);
         OpenEdges { edges: edges.len(), length: edges.iter().map(length).sum() }
     }
@@ -99,15 +100,17 @@ impl MeshLeaf {
         owners: Option<&[u32]>,
         run: &Run,
     ) -> Result<MeshLeaf, Cancelled> {
-        let [to_build, to_close] = run.stages([0.8, 0.2]);
+        let [to_build, to_close] = run.stages([0.6, 0.4]);
         let corner = |v: u32| positions[v as usize].as_dvec3();
-        let flat: Vec<Patch> = triangles.iter().map(|corners| Patch::flat(corners.map(corner))).collect();
+        let flat = gathered(triangles.iter().map(|corners| Patch::flat(corners.map(corner))), &to_build)?;
         let patches = Arc::new(Patches::new(&flat, &to_build)?);
         drop(flat);
         to_close.check()?;
-        let vertices = rim::welded(positions, triangles);
-        let open = rim::open_edges_of(positions, &vertices);
-        let winding = Arc::new(Winding::new(patches.clone(), open.is_empty()));
+        let vertices = rim::welded(positions, triangles, &to_close)?;
+        to_close.report(0.3);
+        let open = rim::open_edges_of(positions, &vertices, &to_close)?;
+        to_close.report(0.6);
+        let winding = Arc::new(Winding::new(patches.clone(), open.is_empty(), &to_close)?);
         let rim = Rim::new(&open, &to_close)?;
         let mut bounds = patches.bounds();
         let membrane = match rim {

@@ -23,6 +23,7 @@
 //!
 //! which is 0 on the membrane and changes by at most 1 a length unit: |∇m| ≤ 1/4 + (m/δ)·2 ≤ 3/4.
 
+use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -31,7 +32,7 @@ use rvachev_num::{Cancelled, Run};
 
 use super::super::face::double;
 use super::super::hierarchy::PARENT;
-use super::super::{Patch, Patches};
+use super::super::{AT_ONCE, Patch, Patches, gathered};
 use super::gaps::Gaps;
 use super::winding::Winding;
 use crate::Bounds;
@@ -47,46 +48,64 @@ pub(super) struct OpenEdge {
 }
 
 /// The open edges of triangles. Vertices at one position are one vertex.
-pub(super) fn open_edges(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<OpenEdge> {
-    open_edges_of(positions, &welded(positions, triangles))
+pub(super) fn open_edges(positions: &[Vec3], triangles: &[[u32; 3]], run: &Run) -> Result<Vec<OpenEdge>, Cancelled> {
+    open_edges_of(positions, &welded(positions, triangles, run)?, run)
 }
 
 /// The triangles by the first vertex at each position.
-pub(super) fn welded(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    let key = |v: &u32| (positions[*v as usize] + 0.0).to_array().map(f32::to_bits);
-    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    order.sort_unstable_by_key(|v| (key(v), *v));
-    let mut first: Vec<u32> = (0..positions.len() as u32).collect();
-    for pair in order.windows(2) {
-        if key(&pair[0]) == key(&pair[1]) {
-            first[pair[1] as usize] = first[pair[0] as usize];
-        }
-    }
-    triangles.iter().map(|corners| corners.map(|v| first[v as usize])).collect()
+pub(super) fn welded(positions: &[Vec3], triangles: &[[u32; 3]], run: &Run) -> Result<Vec<[u32; 3]>, Cancelled> {
+    let mut known: HashMap<[u32; 3], u32> = HashMap::with_capacity(positions.len());
+    let key = |p: &Vec3| (*p + 0.0).to_array().map(f32::to_bits);
+    let names = (0_u32..).zip(positions).map(|(v, p)| *known.entry(key(p)).or_insert(v));
+    let first = gathered(names, run)?;
+    gathered(triangles.iter().map(|corners| corners.map(|v| first[v as usize])), run)
 }
 
 /// The open edges of triangles whose vertices are one at each position.
-pub(super) fn open_edges_of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<OpenEdge> {
-    let mut edges = Vec::with_capacity(3 * triangles.len());
-    for &[a, b, c] in triangles {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            if from != to {
-                edges.push((u64::from(from.min(to)) << 32 | u64::from(from.max(to)), from < to));
+pub(super) fn open_edges_of(positions: &[Vec3], triangles: &[[u32; 3]], run: &Run) -> Result<Vec<OpenEdge>, Cancelled> {
+    let edges_of = |corners: &[u32; 3]| {
+        let [a, b, c] = *corners;
+        [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| from != to)
+    };
+    // Those of each vertex with the lesser number are together.
+    let mut starts = vec![0_usize; positions.len() + 1];
+    for triangles in triangles.chunks(AT_ONCE) {
+        run.check()?;
+        triangles.iter().flat_map(edges_of).for_each(|(from, to)| starts[from.min(to) as usize + 1] += 1);
+    }
+    for v in 0..positions.len() {
+        starts[v + 1] += starts[v];
+    }
+    let mut edges = vec![(0_u32, false); starts[positions.len()]];
+    let mut next = starts.clone();
+    for triangles in triangles.chunks(AT_ONCE) {
+        run.check()?;
+        for (from, to) in triangles.iter().flat_map(edges_of) {
+            let at = &mut next[from.min(to) as usize];
+            edges[*at] = (from.max(to), from < to);
+            *at += 1;
+        }
+    }
+    let mut open = Vec::new();
+    for (least, ends) in (0_u32..).zip(starts.windows(2)) {
+        if (least as usize).is_multiple_of(AT_ONCE) {
+            run.check()?;
+        }
+        let own = &mut edges[ends[0]..ends[1]];
+        own.sort_unstable();
+        for same in own.chunk_by(|a, b| a.0 == b.0) {
+            let more = same.iter().map(|(_, forth)| if *forth { 1_i64 } else { -1 }).sum::<i64>();
+            let mut vertices = [least, same[0].0];
+            if more < 0 {
+                vertices.reverse();
+            }
+            let ends = vertices.map(|v| positions[v as usize].as_dvec3());
+            if more != 0 {
+                open.push(OpenEdge { ends, vertices, missing: more.unsigned_abs() as u32 });
             }
         }
     }
-    edges.sort_unstable();
-    let runs = edges.chunk_by(|a, b| a.0 == b.0);
-    let open = runs.filter_map(|run| {
-        let more = run.iter().map(|(_, forth)| if *forth { 1_i64 } else { -1 }).sum::<i64>();
-        let mut vertices = [(run[0].0 >> 32) as u32, run[0].0 as u32];
-        if more < 0 {
-            vertices.reverse();
-        }
-        let ends = vertices.map(|v| positions[v as usize].as_dvec3());
-        (more != 0).then_some(OpenEdge { ends, vertices, missing: more.unsigned_abs() as u32 })
-    });
-    open.collect()
+    Ok(open)
 }
 
 /// Open edges in boxes within boxes.

@@ -14,12 +14,12 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use rvachev_num::Real;
+use rvachev_num::{Cancelled, Real, Run};
 
-use super::super::Patches;
 use super::super::face::{double, wide};
 use super::super::hierarchy::{DEEPEST, PARENT};
 use super::super::packet::Packet;
+use super::super::{AT_ONCE, Patches};
 
 /// From as many radii away a box is seen as one: of coarse facets the winding number is off by up
 /// to some hundredths.
@@ -85,12 +85,15 @@ pub(super) struct Winding {
 }
 
 impl Winding {
-    pub(super) fn new(patches: Arc<Patches>, is_closed: bool) -> Winding {
+    pub(super) fn new(patches: Arc<Patches>, is_closed: bool, run: &Run) -> Result<Winding, Cancelled> {
         let nodes = &patches.nodes;
         let mut sums = vec![Sum::NONE; nodes.len()];
         let mut moments = vec![Moments::default(); nodes.len()];
         // Children come after their parents.
         for (at, node) in nodes.iter().enumerate().rev() {
+            if at.is_multiple_of(AT_ONCE) {
+                run.check()?;
+            }
             let mut sum = Sum::NONE;
             let mut within: f64 = 0.0;
             if node.count >= PARENT {
@@ -119,7 +122,7 @@ impl Winding {
             };
             sums[at] = sum;
         }
-        Winding { patches, moments, is_closed }
+        Ok(Winding { patches, moments, is_closed })
     }
 
     pub(super) fn is_closed(&self) -> bool {
