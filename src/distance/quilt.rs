@@ -265,9 +265,9 @@ impl Quilt {
         self.doubts.extend(cells.into_iter().map(|cell| (cell, f64::INFINITY)));
     }
 
-    /// Boxes in which patches may be farther off than this.
-    pub(super) fn doubts(&self, off: f64) -> Vec<Bounds> {
-        self.doubts.iter().filter(|(_, own)| *own > off).map(|(bounds, _)| *bounds).collect()
+    /// Boxes in which patches may be farther off than this, and how far.
+    pub(super) fn doubts(&self, off: f64) -> Vec<(Bounds, f64)> {
+        self.doubts.iter().filter(|(_, own)| *own > off).copied().collect()
     }
 
     fn note(&mut self, patch: &Patch, off: f64) {

@@ -75,7 +75,7 @@ impl DistanceSource for FromMeshes {
         }
         if bounds.is_empty() || size == 0.0 {
             let patches = Arc::new(Patches::new(&[], run)?);
-            return Ok(Surface { patches, accuracy: Accuracy::default(), doubts: Vec::new(), flat });
+            return Ok(Surface::new(patches, Accuracy::default(), flat));
         }
         if !size.is_finite() {
             return Err(SolidError::Unbounded { path: programs.unbounded.clone() }.into());
@@ -150,8 +150,8 @@ impl DistanceSource for FromMeshes {
             if let Some((reached, quilt)) = best.take_if(|_| is_last || is_enough) {
                 let patches = Arc::new(Patches::new(&quilt.patches, &run.stage(done, 1.0))?);
                 run.report(1.0);
-                let (accuracy, doubts) = (Accuracy::of_surface(reached, quilt.error), quilt.doubts(reached));
-                return Ok(Surface { patches, accuracy, doubts, flat });
+                let accuracy = Accuracy::of_surface(reached, quilt.error);
+                return Ok(Surface::new(patches, accuracy, flat).in_doubt(tolerance, quilt.doubts(tolerance)));
             }
             cell *= 0.5;
         }

@@ -135,10 +135,15 @@ impl Program {
     pub(crate) fn range_zone(&self, world: &Zone) -> Interval {
         let world = &Pieces::one(*world);
         let zones = self.zones(world);
+        self.range_of_leaves(|leaf| self.leaf_range(leaf, &zones, world))
+    }
+
+    /// The range that ranges of the leaves make.
+    pub(super) fn range_of_leaves(&self, of_leaf: impl Fn(u32) -> Interval) -> Interval {
         let mut ranges: Vec<Interval> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes[..] {
             let range = match &node.kind {
-                Kind::Leaf(leaf) => self.leaf_range(*leaf, &zones, world),
+                Kind::Leaf(leaf) => of_leaf(*leaf),
                 kind => {
                     let operand = |edge: &Edge| {
                         let range = ranges[edge.node()];

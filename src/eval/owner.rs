@@ -4,18 +4,15 @@ use glam::DVec3;
 
 use super::Program;
 
-/// From this bit on the index of an [`Owner`] says which part of its leaf it is.
-const PART: u32 = 20;
-
-/// So many parts of a leaf are told apart.
-const MOST: usize = 1 << 11;
+/// From this number on owners are parts of leaves, other than the first part of each.
+const PARTS: u32 = 1 << 31;
 
 /// A leaf of a solid, as an answer: which leaf decides here?
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Owner {
     /// The leaf's number, in the order of compiling; stable for one solid. Of an imported mesh with
-    /// owners 2²⁰ times their place among the owners, sorted, is added: 0 of the least, 2047 of all
-    /// from the 2048th on; nothing in a solid of more than 2²⁰ leaves.
+    /// owners the least of these has it; the others, sorted, are counted from 2³¹ on, those of the
+    /// first such mesh first.
     pub index: u32,
     /// The path from the root: `difference[1] / twist / superellipsoid`, with the names that
     /// parts [have](crate::Solid::named): `difference[1] / socket: twist / superellipsoid`. Of an
@@ -24,14 +21,25 @@ pub struct Owner {
 }
 
 impl Program {
-    /// Whether owners tell parts of leaves: where there are more leaves, there is no room.
-    fn tells_parts(&self) -> bool {
-        self.scene.leaves.len() <= 1 << PART
-    }
-
     /// The number of the leaf that an owner is, or is a part of.
     pub(crate) fn leaf_of(&self, owner: u32) -> u32 {
-        if self.tells_parts() { owner & ((1 << PART) - 1) } else { owner }
+        self.leaf_and_part(owner).0
+    }
+
+    /// The leaf that an owner is of, and which of its parts it is.
+    fn leaf_and_part(&self, owner: u32) -> (u32, usize) {
+        let Some(number) = owner.checked_sub(PARTS) else { return (owner, 0) };
+        let number = number as usize;
+        let after = self.scene.parted.partition_point(|parted| parted.before <= number);
+        let Some(parted) = after.checked_sub(1).and_then(|at| self.scene.parted.get(at)) else { return (owner, 0) };
+        (parted.leaf, number - parted.before + 1)
+    }
+
+    /// The owner that a part of a leaf is.
+    fn owner_of_part(&self, leaf: u32, part: usize) -> u32 {
+        let at = self.scene.parted.binary_search_by_key(&leaf, |parted| parted.leaf);
+        let number = at.ok().filter(|_| part > 0).map(|at| self.scene.parted[at].before + part - 1);
+        number.map_or(leaf, |number| PARTS.saturating_add(u32::try_from(number).unwrap_or(u32::MAX)))
     }
 
     /// The leaf that decides at a point.
@@ -44,17 +52,15 @@ impl Program {
     pub(crate) fn deciding_owner(&self, p: DVec3) -> u32 {
         let leaf = self.deciding_leaf(p);
         let field = &self.scene.leaves[leaf as usize].field;
-        let is_told = field.parts().len() > 1 && self.tells_parts();
-        let part = if is_told { field.part(self.local(leaf, p)).min(MOST - 1) } else { 0 };
-        leaf | (part as u32) << PART
+        let part = if field.parts().len() > 1 { field.part(self.local(leaf, p)) } else { 0 };
+        self.owner_of_part(leaf, part)
     }
 
     fn owner_of(&self, index: u32) -> Owner {
-        let leaf = &self.scene.leaves[self.leaf_of(index) as usize];
+        let (leaf, part) = self.leaf_and_part(index);
+        let leaf = &self.scene.leaves[leaf as usize];
         let mut path = self.scene.trail.path(leaf.step);
-        if self.tells_parts()
-            && let Some(part) = leaf.field.parts().get((index >> PART) as usize)
-        {
+        if let Some(part) = leaf.field.parts().get(part) {
             path = format!("{path}[{part}]");
         }
         Owner { index, path }

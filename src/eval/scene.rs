@@ -17,7 +17,18 @@ use rvachev_field::{AnyField, AnyWarp, Placement, Zone};
 pub(crate) struct Scene {
     pub(crate) frames: Vec<Frame>,
     pub(crate) leaves: Vec<Instance>,
+    /// The leaves that have more than one part, in their order.
+    pub(crate) parted: Vec<Parted>,
     pub(crate) trail: Trail,
+}
+
+/// A leaf of several parts, whose owners are told apart.
+pub(crate) struct Parted {
+    pub(crate) leaf: u32,
+    /// How many parts of leaves before are told apart from the first of their leaf.
+    pub(crate) before: usize,
+    /// How many it has.
+    pub(crate) count: usize,
 }
 
 /// The frame behind a deformation.
@@ -94,6 +105,16 @@ impl Instance {
 }
 
 impl Scene {
+    /// Adds a leaf.
+    pub(crate) fn add(&mut self, leaf: Instance) {
+        let count = leaf.field.parts().len();
+        if count > 1 {
+            let before = self.parted.last().map_or(0, |last| last.before + last.count - 1);
+            self.parted.push(Parted { leaf: leaf.number, before, count });
+        }
+        self.leaves.push(leaf);
+    }
+
     /// The frame with this number; the world is no [`Frame`].
     pub(crate) fn frame(&self, number: u32) -> Option<&Frame> {
         number.checked_sub(1).map(|index| &self.frames[index as usize])

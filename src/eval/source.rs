@@ -4,10 +4,11 @@
 //! that surface takes a mesh, and meshes stand above programs: so compiling is given a
 //! [`DistanceSource`], and who compiles passes one in.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::accuracy::Accuracy;
 use super::compile::Compiled;
+use super::runs::Runs;
 use crate::{Bounds, Cancelled, Solid, SolidError};
 use rvachev_field::{AnyField, Patches};
 use rvachev_num::Run;
@@ -56,11 +57,38 @@ pub(crate) struct Surface {
     pub(crate) patches: Arc<Patches>,
     /// How far the patches may be off the surface.
     pub(crate) accuracy: Accuracy,
-    /// Where they may be off by more than the tolerance.
-    pub(crate) doubts: Vec<Bounds>,
+    /// What they were to be within: they are off by more where they are in doubt only.
+    pub(crate) tolerance: f64,
+    /// Where they may be off by more than that, and by how much; infinitely where they miss
+    /// something.
+    pub(crate) doubts: Vec<(Bounds, f64)>,
     /// The axis along which it is a cylinder, if it is: the patches are those where its coordinate
     /// is 0.
     pub(crate) flat: Option<usize>,
+    runs: OnceLock<Runs>,
+}
+
+impl Surface {
+    /// One that has nothing in doubt.
+    pub(crate) fn new(patches: Arc<Patches>, accuracy: Accuracy, flat: Option<usize>) -> Surface {
+        let tolerance = accuracy.tolerance;
+        Surface { patches, accuracy, tolerance, doubts: Vec::new(), flat, runs: OnceLock::new() }
+    }
+
+    /// With what it was to be within, and where it is in doubt.
+    pub(crate) fn in_doubt(self, tolerance: f64, doubts: Vec<(Bounds, f64)>) -> Surface {
+        Surface { tolerance, doubts, ..self }
+    }
+
+    /// The boxes in which it may be off by more than its accuracy tells.
+    pub(crate) fn astray(&self) -> impl Iterator<Item = &Bounds> {
+        self.doubts.iter().filter(|(_, off)| *off > self.accuracy.tolerance).map(|(bounds, _)| bounds)
+    }
+
+    /// The boxes of its patches, found on first use.
+    pub(crate) fn runs(&self) -> &Runs {
+        self.runs.get_or_init(|| Runs::new(&self.patches))
+    }
 }
 
 /// A surface that is kept for all equal solids.

@@ -22,6 +22,11 @@ impl Program {
         })
     }
 
+    /// Whether no leaf is deformed, so that those that change by 1 per length unit do so in the solid.
+    pub(crate) fn is_unbent(&self) -> bool {
+        self.nodes.iter().filter_map(Node::valued_by).all(|leaf| self.instance(leaf).frame == 0)
+    }
+
     /// Which leaves of the solid, by their numbers, are convex and thinner than this, in length
     /// units: holes and rods of that size may pass between samples without a change of sign.
     pub(crate) fn thin_leaves(&self, thickness: f64) -> Vec<bool> {

@@ -31,8 +31,9 @@ const SETTLED: f64 = 2.5e-7;
 const STEPS: usize = 40;
 const HALVING: usize = 12;
 
-/// Where the value is more than this part of what it changes by along an edge, and has the other
-/// sign right beside, it may jump.
+/// Where the value is more than this part of what it changes by over the length of an edge, in the
+/// direction in which it changes most, and has the other sign right beside, it may jump. Along the
+/// edge it may not change at all where the gradient was taken, and does beyond a crease.
 const JUMP: f64 = 1e-3;
 
 /// It does if so many halvings more do not bring it down to a half.
@@ -214,7 +215,7 @@ impl RootFinder {
                 bracket.learn(t, value);
                 if by.abs() <= SETTLED && value.abs() <= SETTLED * self.slope[n].abs() || bracket.width() <= SETTLED {
                     self.t[n] = bracket.nearest(t - by);
-                    let is_large = value.abs() > JUMP * self.slope[n].abs();
+                    let is_large = value.abs() > JUMP * self.steepness(n) * step;
                     let jumps = |program| self.jumps((program, tape), &edges[n], n, bracket, step);
                     out[n].is_off = is_large && program.is_none_or(jumps);
                     continue;
@@ -231,6 +232,12 @@ impl RootFinder {
             self.t[n as usize] = bracket.middle();
             out[n as usize].is_off = true;
         }
+    }
+
+    /// How much the value changes with the way where the gradient of an edge was taken.
+    fn steepness(&self, n: usize) -> f64 {
+        let [_, dx, dy, dz] = &self.gradient;
+        DVec3::new(dx[n].into(), dy[n].into(), dz[n].into()).length()
     }
 
     /// Whether the value of an edge jumps within a bracket, or has no change of sign there.

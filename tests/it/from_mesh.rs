@@ -4,6 +4,7 @@
 mod brute;
 mod laws;
 
+use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glam::{DVec3, Vec3};
@@ -267,6 +268,27 @@ fn owners_are_kept() {
     let without = Solid::from_mesh(&mesh, MeshSolid { owners: false, ..MeshSolid::default() });
     assert_ne!(solid(&mesh), without);
     assert_eq!(without.owner([0.5, 0.0, 0.2]).unwrap().path, "mesh");
+}
+
+/// However many owners there are, in more than one mesh.
+#[test]
+fn thousands_of_owners_are_told_apart() {
+    let ball = meshed(&Solid::sphere(1.0), 32);
+    let count = ball.triangles().len() as u32;
+    assert!(count > 3000);
+    let numbered = ball.with_owners((0..count).collect()).unwrap();
+    let imported = solid(&numbered);
+    let part = Solid::sphere(0.5).translate([3.0, 0.0, 0.0]) | &imported | imported.translate([6.0, 0.0, 0.0]);
+    let mut seen = HashSet::new();
+    for n in (0..count).step_by(97).chain([count - 1]) {
+        let corners = numbered.triangles()[n as usize].map(|v| numbered.positions()[v as usize].as_dvec3());
+        for along in [0.0, 6.0] {
+            let owner = part.owner(corners.iter().sum::<DVec3>() / 3.0 + along * DVec3::X).unwrap();
+            assert!(owner.path.ends_with(&format!("mesh[{n}]")), "{} of {n}", owner.path);
+            assert!(seen.insert(owner.index), "{} of {n} is another's", owner.index);
+        }
+    }
+    assert!(part.owner([3.0, 0.0, 0.5]).unwrap().path.ends_with("sphere"));
 }
 
 /// A ball without its top.

@@ -85,7 +85,7 @@ impl Compiler<'_> {
             bounds = grow(&bounds, DVec3::splat(shift * least_stretch(&context.forward.matrix3) / context.scale));
         }
         let number = self.scene.leaves.len() as u32;
-        self.scene.leaves.push(Instance {
+        self.scene.add(Instance {
             number,
             field: field.clone(),
             frame: context.frame,

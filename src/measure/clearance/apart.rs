@@ -8,90 +8,273 @@
 //!  ~~~~~~~~~~~~~ set
 //! ```
 //!
-//! The patches of one surface are divided, those that may be nearest first left, until none can be
-//! nearer than the best point by more than a tolerance. The bound is off by the square of the size:
-//! of a gap that is even, it takes few divisions. Where the other solid's value changes by 1 per
-//! length unit at most, a range of it is a bound as well, and mostly a better one.
+//! Boxes of the patches of one surface are divided, those that are farther from the other surface
+//! than the nearest points that are known left out, and then the patches that are left, until none
+//! can be nearer by more than a tolerance. The bound is off by the square of the size: of a gap that
+//! is even, it takes few divisions. Where the other solid's value changes by 1 per length unit at
+//! most, a range of it is a bound as well, and of the other solid itself, however its patches are.
 
 use glam::DVec3;
 use rayon::prelude::*;
 use rvachev_field::Patches;
 
 use super::piece::Piece;
-use super::{AT_ONCE, Side, chunks, distance};
-use crate::{Cancelled, Run};
+use super::{AT_ONCE, Side, common, distance};
+use crate::eval::Block;
+use crate::query::nearest;
+use crate::{Bounds, Cancelled, Run};
 
-/// How near the least distance is found, as a part of it.
+/// How near the least distance is found, as a part of it, and of the sizes of the solids.
 const RELATIVE: f64 = 1e-3;
+const OF_SIZES: f64 = 1e-5;
 
 /// After so many points the work ends, with what tolerance there is.
 const MOST: usize = 1 << 21;
 
-/// So many patches are tried first.
-const FIRST: usize = 512;
+/// Steps from one surface to the other and back that end the search.
+const STEPS: usize = 30;
 
-/// The nearest points that were found, and what none is nearer than.
+/// What was found of two surfaces.
 pub(super) struct Found {
+    /// The nearest points that were found, on the surfaces themselves.
     pub(super) points: [DVec3; 2],
+    /// No point of the one surface, but where that is in doubt, is nearer to the other solid.
     pub(super) least: f64,
+    /// Whether that holds of the patches of the other surface only, to within what these are exact.
+    pub(super) leans: bool,
+    /// What that may be less by than the distance of the points, or more.
+    pub(super) loss: f64,
+    /// A point of both solids, if a part of the one surface was seen to be within the other solid.
+    pub(super) common: Option<DVec3>,
 }
 
-/// The nearest points of the patches of both.
-pub(super) fn search(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Found, Cancelled> {
-    let (patches, others) = (&from.surface.patches, &to.surface.patches);
-    let mut best = (f64::INFINITY, DVec3::ZERO);
-    for n in (0..patches.len()).step_by(patches.len().div_ceil(FIRST)) {
-        let p = patches.point(n, [0.0; 2]);
-        best = nearer(best, (distance(others, p), p));
+/// How something is from the other surface.
+enum Place {
+    /// No nearer than that, and whether that leans on the patches.
+    Apart(f64, bool),
+    /// The same within the other solid.
+    Within,
+    /// It may be as near as that.
+    Open(f64),
+}
+
+/// Two surfaces, of which the first is divided.
+struct Search<'a> {
+    from: &'a Side<'a>,
+    to: &'a Side<'a>,
+    slack: f64,
+    is_gentle: bool,
+    /// The nearest points of the surfaces that are known.
+    points: [DVec3; 2],
+    /// The point of the patches that is nearest to those of the other surface, with the distance.
+    nearest: (f64, DVec3),
+    least: f64,
+    leans: bool,
+    within: Option<DVec3>,
+}
+
+/// The nearest points of both surfaces; of the first those near its patches.
+pub(super) fn search(from: &Side<'_>, to: &Side<'_>, run: &Run) -> Result<Found, Cancelled> {
+    let slack = from.fineness() + to.fineness();
+    let is_gentle = to.is_gentle();
+    let points = refined(from, to, greedy(from, to));
+    let (least, leans) = (f64::INFINITY, false);
+    let nearest = (f64::INFINITY, points[0]);
+    let mut search = Search { from, to, slack, is_gentle, points, nearest, least, leans, within: None };
+    let near = search.near(run)?;
+    search.divide(near, run)?;
+    search.learn(0.0);
+    let (distance, loss) = (search.known(), search.loss());
+    let Search { points, least, leans, within, .. } = search;
+    let common = within.and_then(|p| common(from, to, slack, p));
+    // A sheet within the other has no point below its surface by what counts.
+    let least = if within.is_some() { 0.0 } else { least.min(distance) };
+    Ok(Found { points, least, leans, loss, common })
+}
+
+impl Search<'_> {
+    fn known(&self) -> f64 {
+        self.points[0].distance(self.points[1])
     }
-    let box_of_others = others.bounds();
-    let first = |n: usize| {
-        let piece = Piece::whole(patches, n);
-        // What is beyond the box of the other is no nearer than that.
-        let to_box =
-            piece.points.iter().map(|p| box_of_others.distance_squared(*p).sqrt()).fold(f64::INFINITY, f64::min);
-        (to_box - 2.0 * piece.longest_side() < best.0).then(|| piece.numbered(|p| distance(others, p)))
-    };
-    let mut pieces: Vec<Piece> = Vec::new();
-    for chunk in chunks(patches.len()) {
-        run.check()?;
-        pieces.par_extend(chunk.into_par_iter().filter_map(first));
+
+    /// How much nearer others may be without being looked for.
+    fn loss(&self) -> f64 {
+        let sizes: f64 = [self.from, self.to].iter().map(|side| side.surface.patches.bounds().longest_side()).sum();
+        // Where it is in doubt a surface may be nearer by that much in any case.
+        let of = |side: &Side<'_>| [3.0 * side.fineness(), side.exactness()];
+        let [fine, coarse] = of(self.from);
+        let [fine_other, coarse_other] = if self.is_gentle { [0.0; 2] } else { of(self.to) };
+        RELATIVE * self.known() + (fine + fine_other).max(coarse + coarse_other) + OF_SIZES * sizes
     }
-    let is_gentle = to.program.is_gentle();
-    let (mut asked, mut least) = (3 * pieces.len(), f64::INFINITY);
-    loop {
-        for piece in &pieces {
-            let ends = piece.numbers.into_iter().zip(piece.points);
-            best = ends.fold(best, nearer);
-        }
-        let enough = best.0 - slack.max(RELATIVE * best.0);
-        let bound = |piece: &Piece| {
-            let least = least_of(piece, patches);
-            if least >= enough || !is_gentle {
-                return least;
+
+    /// What is no nearer need not be looked at.
+    fn enough(&self) -> f64 {
+        self.known() - self.loss()
+    }
+
+    /// Goes to the surfaces from the nearest point of the patches, if that is nearer than what is
+    /// known by more than this.
+    fn learn(&mut self, by: f64) {
+        let (number, p) = self.nearest;
+        if number < self.known() - by {
+            let points = refined(self.from, self.to, p);
+            if points[0].distance(points[1]) < self.known() {
+                self.points = points;
             }
-            least.max(-to.program.range_zone(&piece.zone(patches, DVec3::ZERO)).hi())
-        };
-        let bounds: Vec<f64> = pieces.par_iter().map(bound).collect();
-        // Those that are left as they are, or left at all.
-        let is_done = asked > MOST || best.0 <= slack;
-        let left = bounds.iter().copied().filter(|bound| is_done || *bound >= enough);
-        least = left.fold(least, f64::min);
-        if is_done || bounds.iter().all(|bound| *bound >= enough) {
+        }
+    }
+
+    /// No point of the surface at a piece is nearer to the other solid, as its value tells.
+    fn by_value(&self, piece: &Piece, enough: f64) -> f64 {
+        let (patches, by) = (&self.from.surface.patches, self.from.fineness());
+        let middle = piece.middle();
+        let at_once = -self.to.program.value(middle) - piece.reach(patches) - by;
+        if at_once >= enough { at_once } else { -self.to.program.close_range(&piece.slab(patches, by)).hi() }
+    }
+
+    /// A place by a bound of the other's value and one of the distance from its patches.
+    fn place(&self, enough: f64, middle: DVec3, by_value: f64, by_patches: impl FnOnce() -> f64) -> Place {
+        if by_value >= enough && by_value > 0.0 {
+            return Place::Apart(by_value, false);
+        }
+        let by_patches = by_patches() - self.slack;
+        if by_patches < enough || by_patches <= 0.0 {
+            return Place::Open(by_patches.max(by_value));
+        }
+        if self.to.program.value(middle) > 0.0 { Place::Within } else { Place::Apart(by_patches, true) }
+    }
+
+    /// What is left when those are left out that are apart, or within the other.
+    fn sift<T: Copy>(&mut self, all: &[T], places: &[Place], point: impl Fn(&T) -> DVec3) -> Vec<T> {
+        let mut open = Vec::new();
+        for (own, place) in all.iter().zip(places) {
+            match place {
+                Place::Apart(bound, leans) => {
+                    self.least = self.least.min(*bound);
+                    self.leans |= *leans;
+                }
+                Place::Within => self.within = self.within.or_else(|| Some(point(own))),
+                Place::Open(_) => open.push(*own),
+            }
+        }
+        open
+    }
+
+    /// The patches in boxes that are not known to be farther than the nearest points.
+    fn near(&mut self, run: &Run) -> Result<Vec<usize>, Cancelled> {
+        let (runs, patches, others) = (self.from.surface.runs(), &self.from.surface.patches, &self.to.surface.patches);
+        let mut blocks: Vec<Block> = runs.all().into_iter().collect();
+        let mut near = Vec::new();
+        while !blocks.is_empty() {
+            run.check()?;
+            let enough = self.enough();
+            let place = |block: &Block| {
+                let (centre, radius) = ball(runs.bounds(*block));
+                let by_value = || -self.to.program.value(centre) - radius - self.from.fineness();
+                let by_value = if self.is_gentle { by_value() } else { f64::NEG_INFINITY };
+                self.place(enough, centre, by_value, || distance(others, centre) - radius)
+            };
+            let places: Vec<Place> = blocks.par_iter().with_min_len(AT_ONCE / 16).map(place).collect();
+            let open = self.sift(&blocks, &places, |block| patches.point(runs.patches(*block).start, [0.0; 2]));
+            blocks.clear();
+            for block in open {
+                let before = blocks.len();
+                blocks.extend(runs.parts(block));
+                if blocks.len() == before {
+                    near.extend(runs.patches(block));
+                }
+            }
+        }
+        Ok(near)
+    }
+
+    /// Divides patches until what is left is not nearer than what is known, or there is too much.
+    fn divide(&mut self, near: Vec<usize>, run: &Run) -> Result<(), Cancelled> {
+        let (patches, others) = (&self.from.surface.patches, &self.to.surface.patches);
+        let mut pieces: Vec<Piece> = near.iter().map(|n| Piece::whole(patches, *n)).collect();
+        let mut asked = 0;
+        while !pieces.is_empty() {
+            asked += 3 * pieces.len();
+            let mut next = Vec::new();
+            for some in pieces.chunks(16 * AT_ONCE) {
+                run.check()?;
+                let enough = self.enough();
+                let look = |piece: &Piece| {
+                    let mut own = *piece;
+                    let by_value = if self.is_gentle { self.by_value(piece, enough) } else { f64::NEG_INFINITY };
+                    let place = self.place(enough, piece.middle(), by_value, || {
+                        own = own.numbered(|p| distance(others, p));
+                        least_of(&own, patches)
+                    });
+                    (own, place)
+                };
+                let (found, places): (Vec<Piece>, Vec<Place>) =
+                    some.par_iter().with_min_len(AT_ONCE / 16).map(look).unzip();
+                let open = found.iter().zip(&places).filter(|(_, place)| matches!(place, Place::Open(_)));
+                let ends = open.flat_map(|(piece, _)| piece.numbers.into_iter().zip(piece.points));
+                if let Some(best) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 < self.nearest.0) {
+                    self.nearest = best;
+                    self.learn(self.slack);
+                }
+                let open = self.sift(&found, &places, Piece::middle);
+                if asked <= MOST {
+                    next.extend(open);
+                    continue;
+                }
+                let bound = |place: &Place| if let Place::Open(bound) = place { *bound } else { f64::INFINITY };
+                self.least = places.iter().map(bound).fold(self.least, f64::min);
+                self.leans = true;
+            }
+            if self.known() <= self.slack {
+                // They touch, or cross each other.
+                (self.least, self.leans) = (0.0, true);
+                break;
+            }
+            pieces = Vec::with_capacity(4 * next.len());
+            for some in next.chunks(16 * AT_ONCE) {
+                pieces.par_extend(some.par_iter().flat_map_iter(|piece| piece.divided(patches, |_| 0.0)));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A point of the patches of one surface that is near the other, found by going down to the nearer
+/// of two boxes.
+fn greedy(from: &Side<'_>, to: &Side<'_>) -> DVec3 {
+    let (runs, patches, others) = (from.surface.runs(), &from.surface.patches, &to.surface.patches);
+    let far = |block: &Block| distance(others, runs.bounds(*block).center());
+    let mut at = runs.all();
+    let mut last = at;
+    while let Some(block) = at {
+        last = at;
+        at = runs.parts(block).min_by(|a, b| far(a).total_cmp(&far(b)));
+    }
+    let points = last.into_iter().flat_map(|block| runs.patches(block)).map(|n| patches.point(n, [1.0 / 3.0; 2]));
+    points.min_by(|a, b| distance(others, *a).total_cmp(&distance(others, *b))).unwrap_or_default()
+}
+
+/// The nearest points of the surfaces about a point: from each where the other is.
+fn refined(from: &Side<'_>, to: &Side<'_>, p: DVec3) -> [DVec3; 2] {
+    let there = to.surface.patches.nearest(p).map_or(p, |foot| foot.point);
+    let mut points = [p, there];
+    let mut apart = f64::INFINITY;
+    for _ in 0..STEPS {
+        let Some(there) = nearest(to.program, &to.surface.patches, points[0]) else { break };
+        let Some(here) = nearest(from.program, &from.surface.patches, there) else { break };
+        points = [here, there];
+        let gain = apart - here.distance(there);
+        apart = here.distance(there);
+        if gain.abs() < 1e-12 * apart {
             break;
         }
-        let open: Vec<Piece> =
-            pieces.iter().zip(&bounds).filter(|(_, bound)| **bound < enough).map(|(piece, _)| *piece).collect();
-        asked += 3 * open.len();
-        let mut next = Vec::with_capacity(4 * open.len());
-        for chunk in open.chunks(16 * AT_ONCE) {
-            run.check()?;
-            next.par_extend(chunk.par_iter().flat_map_iter(|piece| piece.divided(patches, |p| distance(others, p))));
-        }
-        pieces = next;
     }
-    let there = others.nearest(best.1).map_or(best.1, |foot| foot.point);
-    Ok(Found { points: [best.1, there], least: least.min(best.0) })
+    points
+}
+
+/// A ball about a box.
+pub(super) fn ball(bounds: &Bounds) -> (DVec3, f64) {
+    (bounds.center(), bounds.half_extents().length())
 }
 
 /// What no point of a piece is nearer to the other surface than.
@@ -99,8 +282,4 @@ fn least_of(piece: &Piece, patches: &Patches) -> f64 {
     let corner = piece.numbers.iter().copied().fold(f64::INFINITY, f64::min);
     let longest = piece.longest_side();
     (corner * corner - longest * longest / 3.0).max(0.0).sqrt() - piece.off(patches)
-}
-
-fn nearer(a: (f64, DVec3), b: (f64, DVec3)) -> (f64, DVec3) {
-    if b.0 < a.0 { b } else { a }
 }

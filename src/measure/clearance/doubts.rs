@@ -60,7 +60,7 @@ impl Shared {
 /// A point of both solids in the boxes of both surfaces, or how large what is left of these is.
 pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entry, Cancelled> {
     let programs = sides.map(|side| Some(side.program.clone()));
-    let all = sides.iter().flat_map(|side| &side.surface.doubts);
+    let all = sides.iter().flat_map(|side| side.surface.astray());
     let whole = Shared { bounds: Bounds::EMPTY, programs };
     let mut open: Vec<Shared> = all.filter_map(|bounds| whole.part(*bounds)).collect();
     let (mut left, mut asked) = (0.0, open.len());
@@ -90,42 +90,75 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
     Ok(Entry::AtMost(left))
 }
 
-/// What no point of one surface in its boxes is nearer to the other surface than, more or less
-/// exactly where that is less than what is enough.
-pub(super) fn least(sides: [&Side<'_>; 2], enough: f64, slack: f64, run: &Run) -> Result<f64, Cancelled> {
-    type Boxes = Vec<(Bounds, Program)>;
-    let surface = |bounds: Bounds, program: &Program| match Part::of(program, &bounds) {
-        Part::Some(program) => Some((bounds, program)),
+/// What is known of two surfaces where they are not in doubt.
+pub(super) struct Known {
+    /// They are no nearer to each other.
+    pub(super) least: f64,
+    /// Whether that is of both surfaces, or of the first one and the other solid, whose value is of no
+    /// patches.
+    pub(super) of_both: bool,
+    /// What it may be less by without being looked into.
+    pub(super) loss: f64,
+}
+
+/// What no point of a surface in its boxes is nearer to the other one than, more or less exactly
+/// where that is less than what is known.
+///
+/// Where patches are off by no more than a length the surface is that much nearer than they are at
+/// most. Boxes are divided where that is too much, or where patches are missing.
+pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f64, Cancelled> {
+    /// A box, what is left of the program in it, and what is known of it without looking into it.
+    type Boxes = Vec<(Bounds, Program, f64)>;
+    let slack = sides.iter().map(|side| side.fineness()).sum::<f64>();
+    let surface = |bounds: Bounds, program: &Program, least: f64| match Part::of(program, &bounds) {
+        Part::Some(program) => Some((bounds, program, least)),
         Part::All | Part::Nothing => None,
     };
-    let mut open: [Boxes; 2] =
-        sides.map(|side| side.surface.doubts.iter().filter_map(|bounds| surface(*bounds, side.program)).collect());
-    let (mut least, mut asked) = (f64::INFINITY, open[0].len() + open[1].len());
+    let mut least = known.least;
+    let mut boxes = |side: &Side<'_>| -> Boxes {
+        let mut open = Vec::new();
+        for (bounds, off) in &side.surface.doubts {
+            let own = (known.least - (off - side.fineness())).max(0.0);
+            if own >= known.least - known.loss {
+                least = least.min(own);
+            } else {
+                open.extend(surface(*bounds, side.program, own));
+            }
+        }
+        open
+    };
+    let mut open = [boxes(sides[0]), if known.of_both { boxes(sides[1]) } else { Vec::new() }];
+    let mut asked = open[0].len() + open[1].len();
     while open.iter().any(|boxes| !boxes.is_empty()) {
         run.check()?;
         let are_compared = open[0].len() * open[1].len() <= PAIRS;
         let near = |side: usize, bounds: &Bounds| {
+            if !known.of_both {
+                return -sides[1].program.range(bounds).hi();
+            }
             let to_patches =
-                distance(&sides[1 - side].surface.patches, bounds.center()) - bounds.half_extents().length();
+                distance(&sides[1 - side].surface.patches, bounds.center()) - bounds.half_extents().length() - slack;
             let others = open[1 - side].iter().filter(|_| are_compared);
-            let to_boxes = others.map(|(other, _)| gap(bounds, other)).fold(f64::INFINITY, f64::min);
-            to_patches.min(to_boxes).max(0.0)
+            let to_boxes = others.map(|(other, ..)| gap(bounds, other)).fold(f64::INFINITY, f64::min);
+            to_patches.min(to_boxes)
         };
-        let found = [0, 1].map(|side| open[side].par_iter().map(|(own, _)| near(side, own)).collect::<Vec<f64>>());
+        let found = [0, 1].map(|side| open[side].par_iter().map(|(own, ..)| near(side, own)).collect::<Vec<f64>>());
         asked += 8 * (found[0].len() + found[1].len());
         let mut next: [Boxes; 2] = [Vec::new(), Vec::new()];
         for (side, (boxes, found)) in open.into_iter().zip(found).enumerate() {
             let mut large = Vec::new();
-            for ((bounds, program), near) in boxes.into_iter().zip(found) {
+            for ((bounds, program, own), near) in boxes.into_iter().zip(found) {
                 // Boxes of the other surface that are left may be anywhere.
-                let near = if are_compared { near } else { 0.0 };
-                if near >= enough || asked > MOST || bounds.size().length() <= slack {
+                let near = if are_compared { near.max(own) } else { own };
+                if near >= known.least - known.loss || asked > MOST || bounds.size().length() <= slack {
                     least = least.min(near);
                 } else {
-                    large.push((bounds, program));
+                    large.push((bounds, program, own));
                 }
             }
-            let parts = |(bounds, program): &(Bounds, Program)| bounds.octants().map(|own| surface(own, program));
+            let parts = |(bounds, program, least): &(Bounds, Program, f64)| {
+                bounds.octants().map(|own| surface(own, program, *least))
+            };
             next[side] = large.par_iter().flat_map_iter(parts).flatten().collect();
         }
         open = next;

@@ -1,9 +1,9 @@
 //! The clearance of two solids: how far apart their surfaces are, and where, or how much they
 //! overlap.
 //!
-//! Whether the [surfaces go into the other solid](overlap) is asked first. If they do not, their
-//! [nearest points](apart) are searched for; if they do, how deep they go, and the volume of what
-//! the solids have in common.
+//! Their [nearest points](apart) are searched for first. If the surfaces come as near to each other
+//! as they are exact, it is asked whether they [go into the other solid](overlap), and if they do,
+//! how deep, and the volume of what the solids have in common.
 
 mod apart;
 mod doubts;
@@ -14,16 +14,13 @@ use glam::DVec3;
 use rvachev_field::Patches;
 
 use self::apart::{Found, search};
-use self::overlap::{Entry, depth, entry};
+use self::doubts::Known;
+use self::overlap::{Entry, common, depth, entry, within};
 use super::integral::integral;
 use crate::distance::{compiled_with, surface_with};
 use crate::error::PrepareError;
 use crate::eval::{Program, Surface};
-use crate::query::nearest;
 use crate::{Run, Solid};
-
-/// Steps from one surface to the other and back that end the search.
-const STEPS: usize = 30;
 
 /// Pieces that are looked at before it is asked whether to go on.
 const AT_ONCE: usize = 256;
@@ -85,20 +82,24 @@ impl Solid {
     /// # Details
     /// The surfaces are those that [`closest_surface_point`](Solid::closest_surface_point) measures
     /// from, found on first use and kept with the solids; the points that are nearest on these are
-    /// led to the surfaces themselves. The tolerance is a thousandth of the distance and how exact
-    /// the surfaces are, some 10⁻⁴ of the sizes of the solids. It is more where both surfaces are
-    /// alike over large parts and close, or have edges of almost no angle near each other: then it
-    /// says how much.
+    /// led to the surfaces themselves. The tolerance is a thousandth of the distance and a few times
+    /// how exact the surfaces are, some 10⁻⁴ of the sizes of the solids. It is more where both
+    /// surfaces are alike over large parts and close, or where one of them was not found that
+    /// exactly: then it says how much.
+    ///
+    /// That no points are nearer is told of the surface of one of the solids, as it was measured, and
+    /// of the other solid itself if its value changes by no more than lengths do, as that of
+    /// distances and of convex leaves does, joined and not deformed; else of both surfaces as they
+    /// were measured. In places where a surface is in doubt the solids are looked at themselves.
     ///
     /// That solids do not overlap is shown to the tolerance: all of each surface as it was
-    /// measured, moved inwards by how exact it is, is outside of the other solid, by ranges of the
-    /// other's value, and in places where a surface is in doubt the solids are looked at
-    /// themselves. What [may be missed](crate::lengths#accuracy) where lengths are measured may be
-    /// missed here too.
+    /// measured is far from the other one and outside, or, moved inwards by how exact it is, outside
+    /// by ranges of the other's value. What [may be missed](crate::lengths#accuracy) where lengths
+    /// are measured may be missed here too.
     ///
     /// Each surface takes as long as a mesh, once. After that a clearance takes milliseconds where
-    /// one place is nearest, and some tenths of a second where a gap is even all over. The volume
-    /// of an overlap is found as by [`measure`](Solid::measure).
+    /// one place is nearest, and some tenths of a second where a gap is even all over, or more between
+    /// threads and the like. The volume of an overlap is found as by [`measure`](Solid::measure).
     ///
     /// # Errors
     /// What is wrong with a solid, that it has no finite box, or that the work was cancelled.
@@ -122,61 +123,58 @@ impl Solid {
         if sides.iter().any(|side| side.surface.patches.is_empty()) {
             return Ok(None);
         }
-        // The one with fewer patches is divided.
-        let is_turned = sides[1].surface.patches.len() < sides[0].surface.patches.len();
-        let [from, to] = if is_turned { [&sides[1], &sides[0]] } else { [&sides[0], &sides[1]] };
         let slack = sides.iter().map(Side::exactness).sum::<f64>();
-        let [to_enter, to_go_on] = to_search.stages([0.4, 0.6]);
-        let mut deepest = 0.0;
-        if own_box.intersects(&other_box) {
-            // Moved by that, and as far off.
-            deepest = 2.0 * slack;
-            for part in 0..3 {
-                let found = match part {
-                    0 => entry(from, to, slack, &to_enter)?,
-                    1 => entry(to, from, slack, &to_enter)?,
-                    _ => doubts::entry([from, to], slack, &to_enter)?,
-                };
-                match found {
-                    Entry::At(point) => {
-                        let common = Clearance {
-                            distance: 0.0,
-                            tolerance: slack,
-                            points: [point; 2],
-                            overlaps: true,
-                            depth: 0.0,
-                            depth_error: 0.0,
-                            volume: 0.0,
-                            volume_error: 0.0,
-                        };
-                        return Ok(Some(self.overlap(other, common, [from, to], &to_go_on)?));
-                    }
-                    Entry::AtMost(at_most) => deepest = f64::max(deepest, at_most),
-                }
-            }
-        }
-        let Found { mut points, mut least } = search(from, to, slack, &to_go_on)?;
-        let enough = points[0].distance(points[1]) - slack;
-        least = least.min(doubts::least([from, to], enough.max(0.0), slack, &to_go_on)?);
-        // On the patches first, then on the fields, each from where the other is.
-        let patches_apart = points[0].distance(points[1]);
-        for _ in 0..STEPS {
-            let Some(there) = nearest(to.program, &to.surface.patches, points[0]) else { break };
-            let Some(here) = nearest(from.program, &from.surface.patches, there) else { break };
-            let gain = points[0].distance(points[1]) - here.distance(there);
-            points = [here, there];
-            if gain.abs() < 1e-12 * patches_apart {
-                break;
-            }
-        }
+        // The one whose surface is less in doubt is divided, if the other's values tell distances.
+        let is_turned = sides[0].cost(&sides[1]) > sides[1].cost(&sides[0]);
+        let [from, to] = if is_turned { [&sides[1], &sides[0]] } else { [&sides[0], &sides[1]] };
+        let [to_find, to_go_on] = to_search.stages([0.4, 0.6]);
+        let in_order = |points: [DVec3; 2]| if is_turned { [points[1], points[0]] } else { points };
+        let apart = |points: [DVec3; 2], tolerance: f64| {
+            let [depth, depth_error, volume, volume_error] = [0.0; 4];
+            let (overlaps, distance) = (false, points[0].distance(points[1]));
+            let points = in_order(points);
+            Clearance { distance, tolerance, points, overlaps, depth, depth_error, volume, volume_error }
+        };
+        let overlap = |point: DVec3| {
+            let common = Clearance { overlaps: true, ..apart([point; 2], slack) };
+            self.overlap(other, common, [from, to], &to_go_on)
+        };
+        let Found { points, mut least, leans, loss, common } = search(from, to, &to_find)?;
         let distance = points[0].distance(points[1]);
-        if is_turned {
-            points.reverse();
+        if let Some(point) = common {
+            return Ok(Some(overlap(point)?));
         }
-        let tolerance = ((distance - least).max(0.0) + slack).max(deepest);
-        let [depth, depth_error, volume, volume_error] = [0.0; 4];
-        let overlaps = false;
-        Ok(Some(Clearance { distance, tolerance, points, overlaps, depth, depth_error, volume, volume_error }))
+        let do_share = own_box.intersects(&other_box);
+        let fine = 2.0 * (from.fineness() + to.fineness());
+        if least > fine || !do_share {
+            let known = Known { least, of_both: leans, loss };
+            least = doubts::least([from, to], &known, &to_go_on)?;
+        }
+        // They are apart, but for one that is within the other.
+        if least > fine || !do_share {
+            let mut inner = if do_share { within(to, from, slack, &to_go_on)? } else { None };
+            if do_share && inner.is_none() && leans {
+                inner = within(from, to, slack, &to_go_on)?;
+            }
+            if let Some(point) = inner {
+                return Ok(Some(overlap(point)?));
+            }
+            return Ok(Some(apart(points, distance - least)));
+        }
+        // Moved by that, and as far off.
+        let mut deepest = 2.0 * slack;
+        for part in 0..3 {
+            let found = match part {
+                0 => entry(from, to, slack, &to_go_on)?,
+                1 => entry(to, from, slack, &to_go_on)?,
+                _ => doubts::entry([from, to], slack, &to_go_on)?,
+            };
+            match found {
+                Entry::At(point) => return Ok(Some(overlap(point)?)),
+                Entry::AtMost(at_most) => deepest = f64::max(deepest, at_most),
+            }
+        }
+        Ok(Some(apart(points, deepest.max(distance - least))))
     }
 
     /// With the depth and the volume of what both have in common.
@@ -215,14 +213,23 @@ impl Side<'_> {
     fn exactness(&self) -> f64 {
         self.surface.accuracy.tolerance
     }
+
+    /// How far they may be off where they are in no doubt.
+    fn fineness(&self) -> f64 {
+        self.surface.tolerance
+    }
+
+    /// Whether the value changes by 1 per length unit at most.
+    fn is_gentle(&self) -> bool {
+        self.program.is_gentle() && self.program.is_unbent()
+    }
+
+    /// How much there is against dividing this surface.
+    fn cost(&self, other: &Side<'_>) -> (bool, f64, usize) {
+        (!other.is_gentle(), self.fineness(), self.surface.patches.len())
+    }
 }
 
 fn distance(patches: &Patches, p: DVec3) -> f64 {
     patches.nearest(p).map_or(f64::INFINITY, |foot| foot.distance)
-}
-
-/// The numbers below one, some at a time.
-fn chunks(count: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
-    const SOME: usize = 16 * AT_ONCE;
-    (0..count.div_ceil(SOME)).map(move |n| n * SOME..count.min((n + 1) * SOME))
 }

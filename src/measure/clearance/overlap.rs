@@ -13,14 +13,20 @@ use std::ops::{ControlFlow, Range};
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::apart::ball;
 use super::piece::Piece;
 use super::{AT_ONCE, Side, distance};
+use crate::eval::Block;
 use crate::{Bounds, Cancelled, Run};
 
 /// How far inside a solid points of it are looked for, in accuracies of the surfaces: of thin
 /// sheets only those that are close to the surface are inside, or on a sheet midway between the
 /// faces.
 const INSIDE: [f64; 5] = [4.0, 1.0, 0.25, 0.06, 0.0];
+
+/// Pieces of which it is not known whether they go into the other solid are not divided any further
+/// if they are no larger than so many accuracies.
+const SMALL: f64 = 4.0;
 
 /// After so many pieces the work ends, with what is known then.
 const MOST: usize = 1 << 17;
@@ -42,22 +48,84 @@ pub(super) enum Entry {
     AtMost(f64),
 }
 
+/// A point of both solids just below a point of the surface of `from`, below that of the other by
+/// more than does not count: nearer to it, they may as well touch.
+pub(super) fn common(from: &Side<'_>, to: &Side<'_>, slack: f64, p: DVec3) -> Option<DVec3> {
+    let others = &to.surface.patches;
+    let normal = from.program.gradient(p).1.normalize_or_zero();
+    let inner = INSIDE.map(|by| p + by * slack * normal);
+    let is_common =
+        |p: &DVec3| from.program.value(*p) > 0.0 && to.program.value(*p) > 0.0 && distance(others, *p) > slack;
+    inner.into_iter().find(is_common)
+}
+
+/// The patches of `from` that may be in the other solid or at its surface, or a point of both.
+fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<Vec<usize>, DVec3>, Cancelled> {
+    let (runs, patches, others) = (from.surface.runs(), &from.surface.patches, &to.surface.patches);
+    let bounds = others.bounds().inflate(slack);
+    let mut blocks: Vec<Block> = runs.all().into_iter().collect();
+    let mut near = Vec::new();
+    while !blocks.is_empty() {
+        run.check()?;
+        // All of it is on one side of the other's surface, or that is near.
+        let look = |block: &Block| {
+            let (centre, radius) = ball(runs.bounds(*block));
+            if !runs.bounds(*block).inflate(slack).intersects(&bounds) {
+                return ControlFlow::Continue(None);
+            }
+            if distance(others, centre) <= radius + 2.0 * slack {
+                return ControlFlow::Continue(Some(*block));
+            }
+            if to.program.value(centre) <= 0.0 {
+                return ControlFlow::Continue(None);
+            }
+            let own = patches.point(runs.patches(*block).start, [0.0; 2]);
+            // Of a sheet it may not be found here: then each patch is looked at.
+            common(from, to, slack, own).map_or(ControlFlow::Continue(Some(*block)), ControlFlow::Break)
+        };
+        let mut open = Vec::new();
+        for found in blocks.par_iter().map(look).collect::<Vec<ControlFlow<DVec3, Option<Block>>>>() {
+            match found {
+                ControlFlow::Break(point) => return Ok(Err(point)),
+                ControlFlow::Continue(block) => open.extend(block),
+            }
+        }
+        blocks.clear();
+        for block in open {
+            let before = blocks.len();
+            blocks.extend(runs.parts(block));
+            if blocks.len() == before {
+                near.extend(runs.patches(block));
+            }
+        }
+    }
+    Ok(Ok(near))
+}
+
+/// Whether a part of one surface is within the other solid, given that they do not come near each
+/// other: a point of both.
+pub(super) fn within(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Option<DVec3>, Cancelled> {
+    let patches = match near(from, to, slack, run)? {
+        Ok(near) => near,
+        Err(point) => return Ok(Some(point)),
+    };
+    let own = &from.surface.patches;
+    let inside = |n: &usize| {
+        let p = own.point(*n, [1.0 / 3.0; 2]);
+        if to.program.value(p) > 0.0 { common(from, to, slack, p) } else { None }
+    };
+    run.check()?;
+    Ok(patches.par_iter().find_map_first(inside))
+}
+
 /// Looks for a point of both solids just below the surface of `from`.
 pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Entry, Cancelled> {
     let (patches, others) = (&from.surface.patches, &to.surface.patches);
     let bounds = others.bounds().inflate(slack);
-    let common = |p: DVec3| {
-        let normal = from.program.gradient(p).1.normalize_or_zero();
-        let inner = INSIDE.map(|by| p + by * slack * normal);
-        // Nearer to the other surface than that, they may as well touch.
-        let is_common =
-            |p: &DVec3| from.program.value(*p) > 0.0 && to.program.value(*p) > 0.0 && distance(others, *p) > slack;
-        inner.into_iter().find(is_common)
-    };
     // Beyond the other's box, farther from its surface than it is large, below its surface,
     // undecided.
     let look = |piece: &Piece| {
-        let middle = piece.points.iter().sum::<DVec3>() / 3.0;
+        let middle = piece.middle();
         let most = piece.longest_side() + piece.off(patches) + 2.0 * slack;
         if bounds.distance_squared(middle).sqrt() > most {
             return ControlFlow::Continue(None);
@@ -71,14 +139,18 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         if !hull.intersects(&bounds) || to.program.range_zone(&zone).hi() <= 0.0 {
             return ControlFlow::Continue(None);
         }
-        match [middle].into_iter().chain(piece.points).find_map(common) {
+        match [middle].into_iter().chain(piece.points).find_map(|p| common(from, to, slack, p)) {
             Some(found) => ControlFlow::Break(found),
             None => ControlFlow::Continue(Some(*piece)),
         }
     };
+    let near = match near(from, to, slack, run)? {
+        Ok(near) => near,
+        Err(point) => return Ok(Entry::At(point)),
+    };
     let mut left = 0.0;
-    let mut asked = patches.len();
-    let mut pieces: Vec<Piece> = (0..patches.len()).map(|n| Piece::whole(patches, n)).collect();
+    let mut asked = near.len();
+    let mut pieces: Vec<Piece> = near.into_iter().map(|n| Piece::whole(patches, n)).collect();
     while !pieces.is_empty() {
         let mut open = Vec::new();
         for chunk in pieces.chunks(AT_ONCE) {
@@ -92,12 +164,12 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
             }
         }
         asked += 4 * open.len();
-        // No corner is deeper than what counts.
-        let is_small = |piece: &Piece| piece.longest_side() <= slack || asked > MOST;
+        let is_small = |piece: &Piece| piece.longest_side() <= SMALL * slack || asked > MOST;
+        // How deep the middle is, and how far anything is from there.
         let reach = |piece: &Piece| {
-            let middle = piece.points.iter().sum::<DVec3>() / 3.0;
+            let middle = piece.middle();
             let deep = if to.program.value(middle) > 0.0 { distance(others, middle) } else { 0.0 };
-            deep.max((INSIDE[0] + 1.0) * slack) + piece.longest_side()
+            deep + piece.reach(patches) + slack
         };
         left = open.iter().filter(|piece| is_small(piece)).map(reach).fold(left, f64::max);
         open.retain(|piece| !is_small(piece));

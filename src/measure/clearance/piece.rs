@@ -73,6 +73,37 @@ impl Piece {
         (b - a).cross(c - a).normalize_or_zero()
     }
 
+    /// No point of it is farther from its middle.
+    pub(super) fn reach(&self, patches: &Patches) -> f64 {
+        self.longest_side() / 3f64.sqrt() + self.off(patches)
+    }
+
+    pub(super) fn middle(&self) -> DVec3 {
+        self.points.iter().sum::<DVec3>() / 3.0
+    }
+
+    /// A zone that holds it, and all that is no farther from it than this.
+    ///
+    /// ```text
+    ///     ____.-'''-.____      A patch bulges to one side of its triangle mostly: the zone is moved there
+    ///     ---/-------\---      by half of that, and is as thick.
+    ///     ''''       ''''
+    /// ```
+    pub(super) fn slab(&self, patches: &Patches, by: f64) -> Zone {
+        let middles = self.middles(patches);
+        let offs = [0, 1, 2].map(|k| middles[k].1 - 0.5 * (self.points[k] + self.points[(k + 1) % 3]));
+        // A quadratic patch is off by four times the sum of the products of two of its coordinates,
+        // at most 1/4 each and 1/3 together, and these vectors.
+        let normal = self.normal();
+        let heights = offs.map(|off| off.dot(normal));
+        let [low, high] = [f64::min, f64::max].map(|pick| heights.into_iter().fold(0.0, pick) * 4.0 / 3.0);
+        let aside = offs.iter().map(|off| (*off - off.dot(normal) * normal).length()).fold(0.0, f64::max) * 4.0 / 3.0;
+        let [a, b, c] = self.points;
+        let axes = DMat3::from_cols(0.5 * (b - a), 0.5 * (c - a), 0.5 * (high - low) * normal);
+        // Of a triangle without area there is no normal, and all of what is off is aside.
+        Zone::of_frame(0.5 * (b + c) + 0.5 * (high + low) * normal, axes).inflated(aside + by)
+    }
+
     /// A zone that holds it, moved by a vector.
     pub(super) fn zone(&self, patches: &Patches, by: DVec3) -> Zone {
         let [a, b, c] = self.points;

@@ -214,12 +214,20 @@ impl Sampler for LevelSampler<'_> {
     }
 
     fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
-        self.inner.roots(scratch, edges, out);
-        let Some(seam) = self.outer else { return };
-        for (edge, root) in edges.iter().zip(out) {
-            if let Some(told) = self.root_at_seam(seam, edge) {
-                *root = told;
-            }
+        let Some(seam) = self.outer else { return self.inner.roots(scratch, edges, out) };
+        // Where the larger cells tell, there may be no root of the program's, and looking for it
+        // takes all the steps there are.
+        let told: Vec<Option<Root>> = edges.iter().map(|edge| self.root_at_seam(seam, edge)).collect();
+        let open: Vec<EdgeRef> =
+            edges.iter().zip(&told).filter(|(_, told)| told.is_none()).map(|(own, _)| *own).collect();
+        if open.len() == edges.len() {
+            return self.inner.roots(scratch, edges, out);
+        }
+        let mut found = vec![Root::default(); open.len()];
+        self.inner.roots(scratch, &open, &mut found);
+        let mut found = found.into_iter();
+        for (root, told) in out.iter_mut().zip(told) {
+            *root = told.or_else(|| found.next()).unwrap_or_default();
         }
     }
 
