@@ -29,6 +29,7 @@ mod fit;
 mod flatten;
 mod flush;
 mod hierarchy;
+mod joint;
 mod moved_in;
 mod narrow;
 mod nothing;

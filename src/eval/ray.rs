@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::bracket::Bracket;
 use super::crossing::distance;
+use super::joint::{beside, runs_on};
 use super::{Program, Region};
 use crate::{Bounds, Interval};
 use rvachev_field::{Along, Segment, Zone};
@@ -81,10 +82,8 @@ const PATIENCE: usize = 1 << 12;
 /// Values nearer to 0, in proportion to the solid's size or to the values about it, may be 0.
 const ROUNDING: f64 = 1e-15;
 
-/// How far from a ray, in proportion to lengths about the solid, others tell whether a face that it
-/// is in is one of the solid, and where about it.
-const BESIDE: f64 = 1e-10;
-const AROUND: [f64; 4] = [0.4, 2.0, 3.6, 5.1];
+/// What is small, in proportion to lengths about the solid.
+const SMALL: f64 = 1e-10;
 
 /// A slope that goes beyond 0 by no more than this, of values on the scale of lengths, is rounding:
 /// a flat piece may be on the way, a crossing and back may not.
@@ -140,41 +139,52 @@ pub(crate) fn first_hit(
     span: [f64; 2],
     care: Care,
 ) -> Option<Hit> {
-    let mut grazes = false;
-    let hit = crossing(program, bounds, (origin, direction), span, care, &mut grazes);
-    if !grazes {
-        return hit;
+    let ray = Ray { program, bounds, origin, direction, far: span[1], care };
+    let mut grazes = care == Care::Full && span[0] > 0.0;
+    let hit = crossing(&ray, span[0], &mut grazes);
+    if grazes || hit.as_ref().is_some_and(|hit| runs_on(&ray, hit)) { beside(&ray, span[0], hit) } else { hit }
+}
+
+/// A ray, and up to where crossings count.
+pub(super) struct Ray<'a> {
+    pub(super) program: &'a Program,
+    bounds: &'a Bounds,
+    pub(super) origin: DVec3,
+    pub(super) direction: DVec3,
+    far: f64,
+    care: Care,
+}
+
+impl Ray<'_> {
+    pub(super) fn value(&self, t: f64) -> f64 {
+        self.program.value(self.origin + t * self.direction)
     }
-    // In a face that operands share it is inside where all rays about it are.
-    let size = if bounds.is_finite() { bounds.longest_side() } else { 1.0 };
-    let by = BESIDE * (size + origin.abs().max_element());
-    let (a, b) = direction.any_orthonormal_pair();
-    let beside = |turn: f64| {
-        let ray = (origin + by * (turn.cos() * a + turn.sin() * b), direction);
-        crossing(program, bounds, ray, span, care, &mut false)
-    };
-    let around: Option<Vec<Hit>> = AROUND.into_iter().map(beside).collect();
-    let last = around?.into_iter().max_by(|a, b| a.distance.total_cmp(&b.distance))?;
-    match hit {
-        Some(hit) if hit.distance <= last.distance => Some(hit),
-        _ => Some(Hit { point: origin + last.distance * direction, ..last }),
+
+    /// A length that is small for the solid, and large for the rounding of its points.
+    pub(super) fn small(&self) -> f64 {
+        let size = if self.bounds.is_finite() { self.bounds.longest_side() } else { 1.0 };
+        SMALL * (size + self.origin.abs().max_element())
+    }
+
+    /// The same ray from another origin.
+    pub(super) fn from(&self, origin: DVec3) -> Self {
+        Ray { origin, ..*self }
+    }
+
+    /// The first crossing from a distance on, with faces that operands share as outside.
+    pub(super) fn next(&self, near: f64) -> Option<Hit> {
+        crossing(self, near, &mut false)
     }
 }
 
 /// The same, with faces that operands share as outside; and whether the ray is in one for a while.
-fn crossing(
-    program: &Program,
-    bounds: &Bounds,
-    (origin, direction): (DVec3, DVec3),
-    [near, far]: [f64; 2],
-    care: Care,
-    grazes: &mut bool,
-) -> Option<Hit> {
+fn crossing(ray: &Ray<'_>, start: f64, grazes: &mut bool) -> Option<Hit> {
+    let Ray { program, bounds, origin, direction, far, care } = *ray;
     if origin.abs().max_element() > FARTHEST_ORIGIN {
         return None;
     }
     let (enter, leave) = clip(bounds, origin, direction)?;
-    let (near, far) = (near.max(enter), far.min(leave));
+    let (near, far) = (start.max(enter), far.min(leave));
     if near > far {
         return None;
     }
@@ -191,7 +201,8 @@ fn crossing(
     let level = LEVEL * (scale / size).min(1.0);
     let one_signed = |slope: Interval| slope.lo() > -level || slope.hi() < level;
     let is_inside = |value: f64| value > doubt;
-    let is_level = |values: [f64; 2]| values.iter().any(|value| value.abs() <= doubt);
+    // But for where it starts.
+    let is_level = |piece: &Piece| (0..2).any(|end| piece.values[end].abs() <= doubt && piece.ends[end] > near);
     let inside = values.map(is_inside);
     let mut pieces = Vec::new();
     let mut start = (near, values[0]);
@@ -214,7 +225,7 @@ fn crossing(
         let is_settled = one_signed(piece.slopes);
         if to - from <= short || is_settled {
             if piece.inside[0] == piece.inside[1] {
-                *grazes |= is_level(piece.values);
+                *grazes |= is_level(&piece);
                 continue;
             }
             let [from, to] = if is_settled { piece.ends } else { [from.min(to), from.max(to)] };
@@ -250,7 +261,7 @@ fn crossing(
                     Region::Inside if !inside[0] => return Some(hit_at(&piece.program, at(t0), t0)),
                     Region::Outside if inside[0] => return Some(hit_at(&piece.program, at(t0), t0)),
                     Region::Inside | Region::Outside => {
-                        *grazes |= is_level(piece.values);
+                        *grazes |= is_level(&piece);
                         continue;
                     }
                 };

@@ -246,9 +246,10 @@ pub(super) fn tangents(
         sides = sides << 1 | u32::from(alike <= crease.alike);
         next = normal;
     }
-    // So far each bit is that of the vertex before.
-    let last = segments.len() - 1;
-    (planes, sides << 1 & ((2 << last) - 1) | sides >> last)
+    // So far each bit is that of the vertex before. Loops of cells are short; of those with more
+    // vertices than bits, about merged cells, sides are not asked for.
+    let last = (segments.len() - 1).min(31);
+    (planes, sides << 1 & u32::MAX >> (31 - last) | sides >> last)
 }
 
 /// The point of a box of cells, clear of its faces, that the planes lead to in up to some steps.

@@ -146,8 +146,9 @@ impl Solid {
     /// misses. `direction` need not be of unit length; distances are in length units.
     ///
     /// The first crossing is found with certainty: parts of the ray are discarded only where
-    /// an interval shows that there is none. A ray that touches the surface without crossing
-    /// may miss it; so may one along which an unbounded deformed solid winds without end.
+    /// an interval shows that there is none. A face that two operands share is inside: a ray in
+    /// it goes on to where the solid ends. A ray that touches the surface without crossing may
+    /// miss it; so may one along which an unbounded deformed solid winds without end.
     ///
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].

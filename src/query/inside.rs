@@ -51,9 +51,11 @@ pub(super) fn is_inside(programs: &Compiled, p: DVec3) -> bool {
     value > -ROUNDING * scale && is_surrounded(program, p, scale)
 }
 
-/// How long a ray is in what counts as inside where it starts in a face that operands share; else 0.
+/// How long a ray that starts in a face that operands share is in what counts as inside; else 0.
 pub(super) fn joint(programs: &Compiled, origin: DVec3) -> f64 {
-    if programs.surface.value(origin) > 0.0 || !is_inside(programs, origin) {
+    // Values of 0 at jumps say nothing of faces.
+    let program = &programs.surface;
+    if program.value(origin) > 0.0 || program.tears() || !is_inside(programs, origin) {
         return 0.0;
     }
     let size = if programs.bounds.is_finite() { programs.bounds.longest_side() } else { 1.0 };

@@ -151,8 +151,9 @@ impl Slice {
         Ok(Image::new(width, height, sampled(&self.field, plane, &columns, &rows))?)
     }
 
-    /// The field as a picture: inside and outside tinted, isolines, and the surface as a line. Where
-    /// a face lies in the plane, what is just above it counts, as [`Side::Above`](crate::Side::Above) does for contours.
+    /// The field as a picture: inside and outside tinted, isolines, and the surface as a line.
+    /// Where a face lies in the plane, what is just above it counts, as
+    /// [`Side::Above`](crate::Side::Above) does for contours.
     ///
     /// # Errors
     /// If a setting is out of its range.

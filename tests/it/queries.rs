@@ -413,6 +413,32 @@ fn slices_of_unequal_length_are_refused() {
 }
 
 #[test]
+fn rays_in_joints_end_where_the_solid_does() {
+    let block = |size: [f64; 3], at: [f64; 3]| Solid::cuboid(size).translate(at);
+    let brick = block([20.0, 20.0, 10.0], [0.0, 0.0, -5.0]);
+    let post = brick.clone() | Solid::cylinder(5.0, 10.0).translate([0.0, 0.0, 5.0]);
+    let stock = brick | block([20.0, 20.0, 10.0], [0.0, 0.0, 5.0]) | block([10.0, 20.0, 20.0], [15.0, 0.0, 0.0]);
+    let apart = block([2.0, 2.0, 1.0], [-2.0, 0.0, -0.5]) | block([2.0, 2.0, 1.0], [2.0, 0.0, 0.5]);
+    let quarter = |x: f64, y: f64| block([2.0, 2.0, 2.0], [x, y, 0.0]);
+    let three = quarter(1.0, 1.0) | quarter(-1.0, 1.0) | quarter(-1.0, -1.0);
+    let spheres = Solid::sphere(1.0).translate([0.0, 1.0, 0.0]) | Solid::sphere(1.0).translate([0.0, -1.0, 0.0]);
+    let rim = 24.75_f64.sqrt();
+    for (name, solid, from, way, want) in [
+        ("out of a post", &post, [1.0, 0.5, 0.0], [1.0, 0.0, 0.0], Some(rim - 1.0)),
+        ("into a post", &post, [-30.0, 0.5, 0.0], [1.0, 0.0, 0.0], Some(30.0 - rim)),
+        ("from a joint through stock", &stock, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], Some(20.0)),
+        ("from stock through a joint", &stock, [15.0, 1.0, 0.0], [-1.0, 0.0, 0.0], Some(25.0)),
+        ("past plates on either side", &apart, [-10.0, 0.3, 0.0], [1.0, 0.0, 0.0], None),
+        ("out of a corner", &three, [0.0, 0.0, 0.0], [1.0, -1.0, 0.0], None),
+        ("between spheres", &spheres, [-9.0, 0.0, 0.0], [1.0, 0.0, 0.0], None),
+    ] {
+        let hit = solid.raycast(from, way).unwrap().map(|hit| hit.distance);
+        let near = hit.zip(want).is_some_and(|(hit, want)| (hit - want).abs() < 1e-7);
+        assert!(near || hit.is_none() && want.is_none(), "{name}: {hit:?} for {want:?}");
+    }
+}
+
+#[test]
 fn a_joint_is_inside_and_no_surface() {
     let brick = Solid::cuboid([20.0, 20.0, 10.0]);
     for turn in [0.0, 0.7] {

@@ -211,20 +211,22 @@ impl Chains<'_> {
                 Some(corner) => points.push(corner),
                 None if is_straight => {}
                 None => {
-                    let count = (bulge / (CHORD * self.tolerance)).sqrt().ceil().clamp(2.0, PARTS);
-                    let part = |k: u32| {
-                        let from = a.point.lerp(b.point, f64::from(k) / count);
-                        self.across(leaf, from, way, [bulge, a.point.distance(b.point)])
+                    let parts = |count: u32| -> Option<Vec<DVec2>> {
+                        let part = |k: u32| {
+                            let from = a.point.lerp(b.point, f64::from(k) / f64::from(count));
+                            self.across(leaf, from, way, [bulge, a.point.distance(b.point)])
+                        };
+                        (1..count).map(part).collect()
                     };
-                    let between: Option<Vec<DVec2>> = (1..count as u32).map(part).collect();
-                    if let Some(between) = between {
-                        let mut to = b;
+                    let count = (bulge / (CHORD * self.tolerance)).sqrt().ceil().clamp(2.0, PARTS) as u32;
+                    if let Some(between) = parts(count).or_else(|| parts(2)) {
+                        let (mut to, deeper) = (b, depth + (between.len() as u32 + 1).ilog2());
                         for point in between.into_iter().rev() {
                             let from = self.end(leaf, point, way);
-                            pending.push((from, to, depth + count.log2() as u32));
+                            pending.push((from, to, deeper));
                             to = from;
                         }
-                        pending.push((a, to, depth + count.log2() as u32));
+                        pending.push((a, to, deeper));
                         continue;
                     }
                     far += 1;
@@ -241,15 +243,20 @@ impl Chains<'_> {
     fn end(&self, leaf: &Leaf, point: DVec2, way: DVec2) -> End {
         // A little outside: inside, a face beside the plane may be nearer.
         let aside = 0.1 * SHARP * self.tolerance * way;
-        End { point, slope: self.section.gradient(&leaf.filling, point - aside).normalize_or_zero() }
+        let slope = self.section.gradient(self.filling(leaf, point), point - aside).normalize_or_zero();
+        End { point, slope }
     }
 
-    /// The value at a point that is in a square, or beside it: there the contour may go on for a
-    /// while.
-    fn value(&self, leaf: &Leaf, p: DVec2) -> f64 {
+    /// What decides about a point that is in a square, or beside it: there the contour may go on for
+    /// a while.
+    fn filling<'b>(&'b self, leaf: &'b Leaf, p: DVec2) -> &'b Filling {
         let from_low = p - leaf.square.low;
         let is_in = from_low.min_element() >= 0.0 && from_low.max_element() <= leaf.square.side;
-        self.section.value(if is_in { &leaf.filling } else { self.whole }, p)
+        if is_in { &leaf.filling } else { self.whole }
+    }
+
+    fn value(&self, leaf: &Leaf, p: DVec2) -> f64 {
+        self.section.value(self.filling(leaf, p), p)
     }
 
     /// Whether a contour that goes the way of a chord passes a point nearer than a part of the
@@ -269,6 +276,9 @@ impl Chains<'_> {
         // In the square the solid is entered once along the way; beyond it may be anything.
         let border = leaf.square.exit(from, outwards * way);
         let mut reach = near.clamp(0.02 * most, most);
+        if 0.02 * most < border && border < reach {
+            reach = border;
+        }
         let beyond = loop {
             let there = value(outwards * reach);
             if (there > 0.0) != (own > 0.0) {

@@ -44,7 +44,7 @@ pub(super) struct Leaf {
 #[derive(Default)]
 pub(super) struct Found {
     pub(super) leaves: Vec<Leaf>,
-    /// Which corners are inside, by their keys.
+    /// Which corners are inside, by their keys: what was told last, where rounding differs.
     inside: HashMap<u64, bool, Spread>,
     /// How many squares were divided.
     divided: usize,

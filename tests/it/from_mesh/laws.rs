@@ -297,7 +297,7 @@ fn sharp_parts_keep_volume_and_creases() {
 fn creases_of_made_parts_are_kept() {
     let rim = |n: usize| {
         let (sin, cos) = (std::f32::consts::TAU * n as f32 / 10.0).sin_cos();
-        let far = if n % 2 == 0 { 10.0 } else { 6.0 };
+        let far = if n.is_multiple_of(2) { 10.0 } else { 6.0 };
         Vec3::new(far * cos, far * sin, 0.0)
     };
     let turn = glam::Quat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.8);
