@@ -46,17 +46,16 @@ pub(super) fn beside(ray: &Ray<'_>, near: f64, hit: Option<Hit>) -> Option<Hit> 
             ahead[which] = rays[which].next(found.distance + 2.0 * small);
             continue;
         }
-        // Between spheres that touch all are inside for a while, but for the ray itself; and where
-        // it leaves at a small angle it is inside for longer than they are.
+        // All are inside for a while between spheres that touch, and for less long than the ray
+        // where it leaves at a small angle: then the value on the ray itself is not 0.
         let at = found.distance + if began { -4.0 * small } else { 4.0 * small };
         let most = rays.iter().map(|ray| ray.value(at)).fold(0.0, f64::max);
-        let is_joint = ray.value(at).abs() <= LEVEL * most;
-        let is_other = |hit: Hit| {
-            let later = found.distance - hit.distance;
-            later < -8.0 * small || began && later > 8.0 * small
-        };
+        let is_level = ray.value(at).abs() <= LEVEL * most;
+        let is_earlier = |hit: Hit| found.distance < hit.distance - 8.0 * small;
+        let is_later = |hit: Hit| found.distance > hit.distance + 8.0 * small;
         let moved = Hit { point: ray.origin + found.distance * ray.direction, ..found };
-        return if is_joint && hit.is_none_or(is_other) { Some(moved) } else { hit };
+        let counts = is_level && hit.is_none_or(is_earlier) || began && hit.is_some_and(is_later);
+        return if counts { Some(moved) } else { hit };
     }
     hit
 }

@@ -1,9 +1,9 @@
 //! Taper, twist and bend against the forward maps, written out here on their own.
 
 use glam::{DMat3, DVec3};
-use rvachev::{CellSize, MeshSettings, Solid, Superellipsoid, deg, rad};
+use rvachev::{Bounds, CellSize, MeshSettings, Solid, Superellipsoid, deg, rad};
 
-use crate::support::{Random, near, near_point, value};
+use crate::support::{Random, near, near_point, random_box, samples, value};
 
 fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.sin() / x }
@@ -247,4 +247,23 @@ fn a_bend_between_heights_that_does_not_fit_says_what_would() {
     assert!(rod.bend_between(-10.0, 10.0, deg(limit - 0.01), deg(0.0)).bounds().is_ok());
     let text = error(3.0, 3.0, 10.0);
     assert!(text.contains("to is 3") && text.contains("above from"), "{text}");
+}
+
+/// Behind the centre of a bend its angle jumps by a turn, which no slope tells.
+#[test]
+fn ranges_hold_what_jumps_behind_the_centre_of_a_bend() {
+    let rod = Solid::superellipsoid([0.4, 0.3, 1.5], 0.7, 0.8).rotate_x(deg(20.0));
+    let mut random = Random::new(1413);
+    for bent in [rod.bend(0.5, deg(0.0)), rod.bend_between(-1.0, 1.0, deg(60.0), deg(0.0))] {
+        let program = bent.surface_program().unwrap();
+        let beyond = Bounds::from_center(DVec3::new(5.0, 0.0, 0.0), DVec3::splat(4.0));
+        for _ in 0..200 {
+            let cell = random_box(&mut random, &beyond);
+            let range = program.range(&cell);
+            for p in samples(&mut random, &cell, 30) {
+                let value = program.value(p);
+                assert!(range.contains(value), "{value} at {p} is not in {range:?} of {cell:?}");
+            }
+        }
+    }
 }
