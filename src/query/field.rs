@@ -233,7 +233,8 @@ impl Solid {
         regions.iter().map(|region| self.range(region)).collect()
     }
 
-    /// [`raycast`](Solid::raycast) along many rays, each an origin and a direction.
+    /// [`raycast`](Solid::raycast) along many rays, each an origin and a direction. On the threads
+    /// of a run, which may be cancelled: [`raycast_all_with`](Solid::raycast_all_with).
     ///
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].
@@ -241,7 +242,9 @@ impl Solid {
         rays.iter().map(|(origin, direction)| self.raycast(*origin, *direction)).collect()
     }
 
-    /// [`closest_surface_point`](Solid::closest_surface_point) to many points.
+    /// [`closest_surface_point`](Solid::closest_surface_point) to many points. On the threads of a
+    /// run, which may be cancelled:
+    /// [`closest_surface_points_with`](Solid::closest_surface_points_with).
     ///
     /// # Errors
     /// What is wrong with the solid; [`SolidError::Unbounded`] if it has no finite box.

@@ -6,6 +6,7 @@ mod field;
 mod inside;
 #[cfg(feature = "formula")]
 mod lower;
+mod many;
 mod mesh;
 mod nearest;
 mod painted;

@@ -70,7 +70,8 @@ impl Solid {
     /// measured so far is kept, and the solid may be used, or prepared, again.
     ///
     /// Two things are still made on first use: the pieces of operands without end, and the surface
-    /// that [`closest_surface_point`](Solid::closest_surface_point) looks on.
+    /// that [`closest_surface_point`](Solid::closest_surface_point) looks on, which
+    /// [`closest_surface_points_with`](Solid::closest_surface_points_with) measures on a run.
     ///
     /// ```
     /// use rvachev::{Progress, Run, Solid, rad};
