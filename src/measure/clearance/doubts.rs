@@ -180,3 +180,38 @@ pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f
 fn gap(one: &Bounds, other: &Bounds) -> f64 {
     (one.min - other.max).max(other.min - one.max).max(DVec3::ZERO).length()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Solid;
+    use crate::distance::{compiled, surface_of};
+    use crate::eval::Surface;
+
+    /// What is told of two balls that are 1 apart, whose patches are those of balls that are smaller
+    /// by .1 each, in doubt all over: in so many boxes each.
+    fn told(boxes: usize, loss: f64) -> f64 {
+        let by = 0.1;
+        let balls = [0.0, 3.0].map(|x| Solid::sphere(1.0).translate([x, 0.0, 0.0]));
+        let small = [0.0, 3.0].map(|x| surface_of(&Solid::sphere(1.0 - by).translate([x, 0.0, 0.0])).unwrap());
+        let programs = balls.each_ref().map(|ball| compiled(ball).unwrap());
+        let fine = small.iter().map(|surface| surface.tolerance).sum::<f64>();
+        let surfaces = [0, 1].map(|n| {
+            let doubts = vec![(balls[n].bounds().unwrap().inflate(0.01), by + small[n].tolerance); boxes];
+            Surface::new(small[n].patches.clone(), small[n].accuracy, None).in_doubt(small[n].tolerance, doubts)
+        });
+        let sides = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
+        let known = Known { least: 1.0 + 2.0 * by - fine, of_both: true, loss };
+        least([&sides[0], &sides[1]], &known, &Run::default()).unwrap()
+    }
+
+    #[test]
+    fn what_both_surfaces_are_off_by_adds_up() {
+        // Looked into, of one or both, or not at all; and with too many boxes to compare.
+        for (boxes, loss) in [(1, 0.01), (1, 0.15), (1, 0.25), (2100, 0.01), (2100, 0.25)] {
+            let least = told(boxes, loss);
+            assert!(least <= 1.0 + 1e-9, "{least} of {boxes} boxes, with a loss of {loss}");
+        }
+        assert!(told(1, 0.01) > 0.75 && told(1, 0.25) > 0.95);
+    }
+}
