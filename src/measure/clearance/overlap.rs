@@ -259,3 +259,29 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         pieces = next;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Solid;
+    use crate::distance::{compiled, surface_of};
+
+    #[test]
+    fn of_a_sheet_within_another_solid_it_is_told_how_deep_it_may_be() {
+        // Moved by what does not count all points are through the sheet, and those that are not
+        // moved are at its surface.
+        let solids = [Solid::cuboid([1.0, 1.0, 2f64.powi(-7)]), Solid::sphere(10.0)];
+        let programs = solids.each_ref().map(|solid| compiled(solid).unwrap());
+        let surfaces = solids.each_ref().map(|solid| surface_of(solid).unwrap());
+        let [sheet, ball] = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
+        match within(&sheet, &ball, 1.0, &Run::default()).unwrap() {
+            Entry::At(p) => assert!(sheet.program.value(p) > 0.0 && p.length() < 9.0, "{p}"),
+            Entry::AtMost(deep) => assert!(deep >= 10.0, "{deep}"),
+        }
+        // One that is beyond it is not.
+        let beyond = Solid::sphere(1.0).translate([20.0, 0.0, 0.0]);
+        let (program, surface) = (compiled(&beyond).unwrap(), surface_of(&beyond).unwrap());
+        let found = within(&Side::new(&program, &surface), &ball, 1.0, &Run::default()).unwrap();
+        assert!(matches!(found, Entry::AtMost(deep) if deep == 0.0));
+    }
+}
