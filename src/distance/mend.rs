@@ -68,7 +68,9 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
         false => vec![group],
     };
     let found = if depth == 0 { Vec::new() } else { groups(&spots, tolerance) };
-    let groups: Vec<Group> = found.into_iter().flat_map(in_parts).collect();
+    let parts: Vec<Group> = found.iter().cloned().flat_map(in_parts).collect();
+    // Of too many parts the whole groups are left.
+    let groups = if parts.len() > BOXES { found } else { parts };
     if groups.is_empty() || groups.len() > BOXES {
         quilt.take_spots(spots);
         return Ok(());

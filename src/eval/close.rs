@@ -65,3 +65,68 @@ fn close(instance: &Instance, zone: &Zone) -> Interval {
     let side = if inside { Interval::new(near, f64::INFINITY) } else { Interval::new(f64::NEG_INFINITY, -near) };
     coarse.narrowed_by(side)
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::*;
+    use crate::distance::compiled;
+    use crate::{Profile, Solid};
+
+    /// Numbers from -1 to 1.
+    struct Random(u64);
+
+    impl Random {
+        fn number(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+
+        fn vector(&mut self) -> DVec3 {
+            DVec3::new(self.number(), self.number(), self.number())
+        }
+    }
+
+    #[test]
+    fn values_are_in_close_ranges_over_oblique_zones() {
+        let star: Vec<[f64; 2]> = (0..10)
+            .map(|k| {
+                let (angle, radius) = (f64::from(k) * std::f64::consts::PI / 5.0, if k % 2 == 0 { 2.0 } else { 0.8 });
+                [radius * angle.cos(), radius * angle.sin()]
+            })
+            .collect();
+        let solids = [
+            Solid::cuboid([2.0, 3.0, 1.0]),
+            Solid::torus(2.0, 0.5),
+            Solid::superellipsoid([1.0, 1.5, 2.0], 0.6, 0.8),
+            Profile::polygon(star).extrude(1.5),
+        ];
+        let mut random = Random(7);
+        for solid in solids {
+            let turned = solid.rotate_x(crate::deg(20.0)).translate([0.3, -0.2, 0.1]);
+            let program = &compiled(&turned).unwrap().surface;
+            let mut closer = 0;
+            for number in 0..600 {
+                let size = 0.5f64.powi(number % 8);
+                let axes = DMat3::from_cols(random.vector(), random.vector(), random.vector()) * size;
+                // Every third is a parallelogram, as patches have them.
+                let flat = DMat3::from_cols(axes.x_axis, axes.y_axis, DVec3::ZERO);
+                let zone = Zone::of_frame(3.0 * random.vector(), if number % 3 == 0 { flat } else { axes });
+                let (close, coarse) = (program.close_range(&zone), program.range_zone(&zone));
+                closer += u32::from(close.hi() < coarse.hi() || close.lo() > coarse.lo());
+                for sample in 0..20 {
+                    // Half of them at corners.
+                    let at = random.vector();
+                    let at = if sample % 2 == 0 { at } else { at.signum() };
+                    let value = program.value(zone.centre + zone.axes * at);
+                    assert!(
+                        close.lo() - 1e-12 <= value && value <= close.hi() + 1e-12,
+                        "{value} is not in {close:?} of {zone:?}"
+                    );
+                }
+            }
+            assert!(closer > 100, "{closer}");
+        }
+    }
+}

@@ -10,9 +10,10 @@
 //!
 //! Boxes of the patches of one surface are divided, those that are farther from the other surface
 //! than the nearest points that are known left out, and then the patches that are left, until none
-//! can be nearer by more than a tolerance. The bound is off by the square of the size: of a gap that
-//! is even, it takes few divisions. Where the other solid's value changes by 1 per length unit at
-//! most, a range of it is a bound as well, and of the other solid itself, however its patches are.
+//! can be nearer by more than a tolerance. The bound is off by the square of the size: of a gap
+//! that is even, it takes few divisions. Where the other solid's value changes by 1 per length unit
+//! at most, a range of it is a bound as well, and of the other solid itself, however its patches
+//! are.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -76,7 +77,7 @@ struct Search<'a> {
 /// The nearest points of both surfaces; of the first those near its patches.
 pub(super) fn search(from: &Side<'_>, to: &Side<'_>, run: &Run) -> Result<Found, Cancelled> {
     let slack = from.fineness() + to.fineness();
-    let is_gentle = to.is_gentle();
+    let is_gentle = to.is_gentle;
     let points = refined(from, to, greedy(from, to));
     let (least, leans) = (f64::INFINITY, false);
     let nearest = (f64::INFINITY, points[0]);
@@ -88,7 +89,7 @@ pub(super) fn search(from: &Side<'_>, to: &Side<'_>, run: &Run) -> Result<Found,
     let Search { points, least, leans, within, .. } = search;
     let common = within.and_then(|p| common(from, to, slack, p));
     // A sheet within the other has no point below its surface by what counts.
-    let least = if within.is_some() { 0.0 } else { least.min(distance) };
+    let least = if within.is_some() { 0.0 } else { least.min(distance).max(0.0) };
     Ok(Found { points, least, leans, loss, common })
 }
 
@@ -166,7 +167,6 @@ impl Search<'_> {
         let mut blocks: Vec<Block> = runs.all().into_iter().collect();
         let mut near = Vec::new();
         while !blocks.is_empty() {
-            run.check()?;
             let enough = self.enough();
             let place = |block: &Block| {
                 let (centre, radius) = ball(runs.bounds(*block));
@@ -174,7 +174,11 @@ impl Search<'_> {
                 let by_value = if self.is_gentle { by_value() } else { f64::NEG_INFINITY };
                 self.place(enough, centre, by_value, || distance(others, centre) - radius)
             };
-            let places: Vec<Place> = blocks.par_iter().with_min_len(AT_ONCE / 16).map(place).collect();
+            let mut places: Vec<Place> = Vec::with_capacity(blocks.len());
+            for some in blocks.chunks(16 * AT_ONCE) {
+                run.check()?;
+                places.par_extend(some.par_iter().with_min_len(AT_ONCE / 16).map(place));
+            }
             let open = self.sift(&blocks, &places, |block| patches.point(runs.patches(*block).start, [0.0; 2]));
             blocks.clear();
             for block in open {
@@ -232,6 +236,7 @@ impl Search<'_> {
             }
             pieces = Vec::with_capacity(4 * next.len());
             for some in next.chunks(16 * AT_ONCE) {
+                run.check()?;
                 pieces.par_extend(some.par_iter().flat_map_iter(|piece| piece.divided(patches, |_| 0.0)));
             }
         }
@@ -265,7 +270,7 @@ fn refined(from: &Side<'_>, to: &Side<'_>, p: DVec3) -> [DVec3; 2] {
         points = [here, there];
         let gain = apart - here.distance(there);
         apart = here.distance(there);
-        if gain.abs() < 1e-12 * apart {
+        if gain.abs() <= 1e-12 * apart {
             break;
         }
     }

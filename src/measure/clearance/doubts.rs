@@ -78,8 +78,9 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
             open.into_iter().partition(|part| asked > MOST || part.bounds.size().length() <= slack);
         // What is in doubt within the other solid may be as deep there as it is from its surface.
         let deepest = |part: &Shared| {
-            let holds = (0..2).filter(|side| part.programs[*side].is_none());
-            let deep = holds.map(|side| distance(&sides[side].surface.patches, part.bounds.center()));
+            let middle = part.bounds.center();
+            let holds = (0..2).filter(|n| part.programs[*n].is_none() || sides[*n].program.value(middle) > 0.0);
+            let deep = holds.map(|side| distance(&sides[side].surface.patches, middle));
             let half = part.bounds.half_extents().length();
             deep.fold(half, f64::max) + half
         };
@@ -94,8 +95,8 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
 pub(super) struct Known {
     /// They are no nearer to each other.
     pub(super) least: f64,
-    /// Whether that is of both surfaces, or of the first one and the other solid, whose value is of no
-    /// patches.
+    /// Whether that is of both surfaces, or of the first one and the other solid, whose value is of
+    /// no patches.
     pub(super) of_both: bool,
     /// What it may be less by without being looked into.
     pub(super) loss: f64,
@@ -114,42 +115,51 @@ pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f
         Part::Some(program) => Some((bounds, program, least)),
         Part::All | Part::Nothing => None,
     };
+    // Where both surfaces are off, what they are nearer by adds up: what is not looked into may be
+    // half of it of each.
+    let more = |n: usize, off: f64| (off - sides[n].fineness()).max(0.0);
+    let most = if known.of_both { 0.5 * known.loss } else { known.loss };
+    let spare = [1, 0].map(|n: usize| {
+        let all = sides[n].surface.doubts.iter().filter(|_| known.of_both).map(|(_, off)| more(n, *off));
+        all.filter(|own| *own <= most).fold(0.0, f64::max)
+    });
     let mut least = known.least;
-    let mut boxes = |side: &Side<'_>| -> Boxes {
+    let mut boxes = |n: usize| -> Boxes {
         let mut open = Vec::new();
-        for (bounds, off) in &side.surface.doubts {
-            let own = (known.least - (off - side.fineness())).max(0.0);
-            if own >= known.least - known.loss {
+        for (bounds, off) in &sides[n].surface.doubts {
+            let own = (known.least - more(n, *off) - spare[n]).max(0.0);
+            if more(n, *off) <= most {
                 least = least.min(own);
             } else {
-                open.extend(surface(*bounds, side.program, own));
+                open.extend(surface(*bounds, sides[n].program, own));
             }
         }
         open
     };
-    let mut open = [boxes(sides[0]), if known.of_both { boxes(sides[1]) } else { Vec::new() }];
+    let mut open = [boxes(0), if known.of_both { boxes(1) } else { Vec::new() }];
     let mut asked = open[0].len() + open[1].len();
     while open.iter().any(|boxes| !boxes.is_empty()) {
         run.check()?;
         let are_compared = open[0].len() * open[1].len() <= PAIRS;
-        let near = |side: usize, bounds: &Bounds| {
+        let near = |side: usize, bounds: &Bounds, own: f64| {
             if !known.of_both {
-                return -sides[1].program.range(bounds).hi();
+                return (-sides[1].program.range(bounds).hi()).max(own);
             }
             let to_patches =
                 distance(&sides[1 - side].surface.patches, bounds.center()) - bounds.half_extents().length() - slack;
             let others = open[1 - side].iter().filter(|_| are_compared);
             let to_boxes = others.map(|(other, ..)| gap(bounds, other)).fold(f64::INFINITY, f64::min);
-            to_patches.min(to_boxes)
+            (to_patches - spare[side]).max(own).min(to_boxes).max(0.0)
         };
-        let found = [0, 1].map(|side| open[side].par_iter().map(|(own, ..)| near(side, own)).collect::<Vec<f64>>());
+        let of_boxes = |side: usize| open[side].par_iter().map(move |(bounds, _, own)| near(side, bounds, *own));
+        let found = [0, 1].map(|side| of_boxes(side).collect::<Vec<f64>>());
         asked += 8 * (found[0].len() + found[1].len());
         let mut next: [Boxes; 2] = [Vec::new(), Vec::new()];
         for (side, (boxes, found)) in open.into_iter().zip(found).enumerate() {
             let mut large = Vec::new();
             for ((bounds, program, own), near) in boxes.into_iter().zip(found) {
                 // Boxes of the other surface that are left may be anywhere.
-                let near = if are_compared { near.max(own) } else { own };
+                let near = if are_compared { near } else { 0.0 };
                 if near >= known.least - known.loss || asked > MOST || bounds.size().length() <= slack {
                     least = least.min(near);
                 } else {
@@ -169,4 +179,39 @@ pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f
 /// How far two boxes are apart.
 fn gap(one: &Bounds, other: &Bounds) -> f64 {
     (one.min - other.max).max(other.min - one.max).max(DVec3::ZERO).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Solid;
+    use crate::distance::{compiled, surface_of};
+    use crate::eval::Surface;
+
+    /// What is told of two balls that are 1 apart, whose patches are those of balls that are smaller
+    /// by .1 each, in doubt all over: in so many boxes each.
+    fn told(boxes: usize, loss: f64) -> f64 {
+        let by = 0.1;
+        let balls = [0.0, 3.0].map(|x| Solid::sphere(1.0).translate([x, 0.0, 0.0]));
+        let small = [0.0, 3.0].map(|x| surface_of(&Solid::sphere(1.0 - by).translate([x, 0.0, 0.0])).unwrap());
+        let programs = balls.each_ref().map(|ball| compiled(ball).unwrap());
+        let fine = small.iter().map(|surface| surface.tolerance).sum::<f64>();
+        let surfaces = [0, 1].map(|n| {
+            let doubts = vec![(balls[n].bounds().unwrap().inflate(0.01), by + small[n].tolerance); boxes];
+            Surface::new(small[n].patches.clone(), small[n].accuracy, None).in_doubt(small[n].tolerance, doubts)
+        });
+        let sides = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
+        let known = Known { least: 1.0 + 2.0 * by - fine, of_both: true, loss };
+        least([&sides[0], &sides[1]], &known, &Run::default()).unwrap()
+    }
+
+    #[test]
+    fn what_both_surfaces_are_off_by_adds_up() {
+        // Looked into, of one or both, or not at all; and with too many boxes to compare.
+        for (boxes, loss) in [(1, 0.01), (1, 0.15), (1, 0.25), (2100, 0.01), (2100, 0.25)] {
+            let least = told(boxes, loss);
+            assert!(least <= 1.0 + 1e-9, "{least} of {boxes} boxes, with a loss of {loss}");
+        }
+        assert!(told(1, 0.01) > 0.75 && told(1, 0.25) > 0.95);
+    }
 }

@@ -19,7 +19,7 @@ use self::overlap::{Entry, common, depth, entry, within};
 use super::integral::integral;
 use crate::distance::{compiled_with, surface_with};
 use crate::error::PrepareError;
-use crate::eval::{Program, Surface};
+use crate::eval::{Accuracy, Compiled, Program, Surface};
 use crate::{Run, Solid};
 
 /// Pieces that are looked at before it is asked whether to go on.
@@ -82,24 +82,27 @@ impl Solid {
     /// # Details
     /// The surfaces are those that [`closest_surface_point`](Solid::closest_surface_point) measures
     /// from, found on first use and kept with the solids; the points that are nearest on these are
-    /// led to the surfaces themselves. The tolerance is a thousandth of the distance and a few times
-    /// how exact the surfaces are, some 10⁻⁴ of the sizes of the solids. It is more where both
-    /// surfaces are alike over large parts and close, or where one of them was not found that
+    /// led to the surfaces themselves. The tolerance is a thousandth of the distance and a few
+    /// times how exact the surfaces are, some 10⁻⁴ of the sizes of the solids. It is more where
+    /// both surfaces are alike over large parts and close, or where one of them was not found that
     /// exactly: then it says how much.
     ///
-    /// That no points are nearer is told of the surface of one of the solids, as it was measured, and
-    /// of the other solid itself if its value changes by no more than lengths do, as that of
-    /// distances and of convex leaves does, joined and not deformed; else of both surfaces as they
-    /// were measured. In places where a surface is in doubt the solids are looked at themselves.
+    /// That no points are nearer is told of the surface of one of the solids, as it was measured,
+    /// and of the other solid itself if its value changes by no more than lengths do, as that of
+    /// distances and of convex leaves does, joined and not deformed; else, and where a length of
+    /// the other solid was measured itself, as [`accuracy`](Solid::accuracy) tells, of both
+    /// surfaces as they were measured. In places where a surface is in doubt the solids are looked
+    /// at themselves.
     ///
-    /// That solids do not overlap is shown to the tolerance: all of each surface as it was
-    /// measured is far from the other one and outside, or, moved inwards by how exact it is, outside
-    /// by ranges of the other's value. What [may be missed](crate::lengths#accuracy) where lengths
+    /// That solids do not overlap is shown to the tolerance: all of each surface as it was measured
+    /// is far from the other one and outside, or, moved inwards by how exact it is, outside by
+    /// ranges of the other's value. What [may be missed](crate::lengths#accuracy) where lengths
     /// are measured may be missed here too.
     ///
     /// Each surface takes as long as a mesh, once. After that a clearance takes milliseconds where
-    /// one place is nearest, and some tenths of a second where a gap is even all over, or more between
-    /// threads and the like. The volume of an overlap is found as by [`measure`](Solid::measure).
+    /// one place is nearest, and some tenths of a second where a gap is even all over, or more
+    /// between threads and the like. The volume of an overlap is found as by
+    /// [`measure`](Solid::measure).
     ///
     /// # Errors
     /// What is wrong with a solid, that it has no finite box, or that the work was cancelled.
@@ -119,7 +122,7 @@ impl Solid {
         let quiet = Run { progress: None, ..run.clone() };
         let programs = [compiled_with(self, &quiet)?, compiled_with(other, &quiet)?];
         let surfaces = [surface_with(self, &to_own)?, surface_with(other, &to_other)?];
-        let sides = [0, 1].map(|n| Side { program: &programs[n].surface, surface: &surfaces[n] });
+        let sides = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
         if sides.iter().any(|side| side.surface.patches.is_empty()) {
             return Ok(None);
         }
@@ -146,25 +149,23 @@ impl Solid {
         }
         let do_share = own_box.intersects(&other_box);
         let fine = 2.0 * (from.fineness() + to.fineness());
-        if least > fine || !do_share {
+        if least > 0.0 {
             let known = Known { least, of_both: leans, loss };
             least = doubts::least([from, to], &known, &to_go_on)?;
         }
-        // They are apart, but for one that is within the other.
-        if least > fine || !do_share {
-            let mut inner = if do_share { within(to, from, slack, &to_go_on)? } else { None };
-            if do_share && inner.is_none() && leans {
-                inner = within(from, to, slack, &to_go_on)?;
-            }
-            if let Some(point) = inner {
-                return Ok(Some(overlap(point)?));
-            }
+        if !do_share {
             return Ok(Some(apart(points, distance - least)));
         }
-        // Moved by that, and as far off.
-        let mut deepest = 2.0 * slack;
+        // Surfaces that are apart do not cross, but one may be within the other solid. Others are
+        // moved by the slack, and as far off.
+        let is_apart = least > fine;
+        let mut deepest = if is_apart { 0.0 } else { 2.0 * slack };
         for part in 0..3 {
             let found = match part {
+                0 if is_apart => within(to, from, slack, &to_go_on)?,
+                // The other's value has told it of all patches.
+                1 if is_apart && !leans => continue,
+                1 if is_apart => within(from, to, slack, &to_go_on)?,
                 0 => entry(from, to, slack, &to_go_on)?,
                 1 => entry(to, from, slack, &to_go_on)?,
                 _ => doubts::entry([from, to], slack, &to_go_on)?,
@@ -206,9 +207,18 @@ impl Solid {
 struct Side<'a> {
     program: &'a Program,
     surface: &'a Surface,
+    /// Whether the value changes by 1 per length unit at most.
+    is_gentle: bool,
 }
 
-impl Side<'_> {
+impl<'a> Side<'a> {
+    fn new(compiled: &'a Compiled, surface: &'a Surface) -> Side<'a> {
+        let program = &compiled.surface;
+        // A distance that was measured jumps where its patches are off the surface.
+        let is_exact = compiled.accuracy == Accuracy::default();
+        Side { program, surface, is_gentle: is_exact && program.is_gentle() && program.is_unbent() }
+    }
+
     /// How far the patches may be off, but where they are in doubt.
     fn exactness(&self) -> f64 {
         self.surface.accuracy.tolerance
@@ -219,14 +229,9 @@ impl Side<'_> {
         self.surface.tolerance
     }
 
-    /// Whether the value changes by 1 per length unit at most.
-    fn is_gentle(&self) -> bool {
-        self.program.is_gentle() && self.program.is_unbent()
-    }
-
     /// How much there is against dividing this surface.
     fn cost(&self, other: &Side<'_>) -> (bool, f64, usize) {
-        (!other.is_gentle(), self.fineness(), self.surface.patches.len())
+        (!other.is_gentle, self.fineness(), self.surface.patches.len())
     }
 }
 

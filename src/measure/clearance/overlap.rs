@@ -66,7 +66,6 @@ fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<
     let mut blocks: Vec<Block> = runs.all().into_iter().collect();
     let mut near = Vec::new();
     while !blocks.is_empty() {
-        run.check()?;
         // All of it is on one side of the other's surface, or that is near.
         let look = |block: &Block| {
             let (centre, radius) = ball(runs.bounds(*block));
@@ -84,10 +83,13 @@ fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<
             common(from, to, slack, own).map_or(ControlFlow::Continue(Some(*block)), ControlFlow::Break)
         };
         let mut open = Vec::new();
-        for found in blocks.par_iter().map(look).collect::<Vec<ControlFlow<DVec3, Option<Block>>>>() {
-            match found {
-                ControlFlow::Break(point) => return Ok(Err(point)),
-                ControlFlow::Continue(block) => open.extend(block),
+        for some in blocks.chunks(16 * AT_ONCE) {
+            run.check()?;
+            for found in some.par_iter().map(look).collect::<Vec<ControlFlow<DVec3, Option<Block>>>>() {
+                match found {
+                    ControlFlow::Break(point) => return Ok(Err(point)),
+                    ControlFlow::Continue(block) => open.extend(block),
+                }
             }
         }
         blocks.clear();
@@ -102,20 +104,35 @@ fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<
     Ok(Ok(near))
 }
 
-/// Whether a part of one surface is within the other solid, given that they do not come near each
-/// other: a point of both.
-pub(super) fn within(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Option<DVec3>, Cancelled> {
+/// Whether a part of one surface is within the other solid, given that they do not cross each
+/// other: of each patch the middle tells.
+pub(super) fn within(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Entry, Cancelled> {
     let patches = match near(from, to, slack, run)? {
         Ok(near) => near,
-        Err(point) => return Ok(Some(point)),
+        Err(point) => return Ok(Entry::At(point)),
     };
-    let own = &from.surface.patches;
-    let inside = |n: &usize| {
+    let (own, others) = (&from.surface.patches, &to.surface.patches);
+    // Of a sheet, or of what is hardly within, no point may be found below its surface.
+    let look = |n: &usize| {
         let p = own.point(*n, [1.0 / 3.0; 2]);
-        if to.program.value(p) > 0.0 { common(from, to, slack, p) } else { None }
+        if to.program.value(p) <= 0.0 {
+            return Entry::AtMost(0.0);
+        }
+        let piece = Piece::whole(own, *n);
+        let deep = || distance(others, piece.middle()) + piece.reach(own) + slack;
+        common(from, to, slack, p).map_or_else(|| Entry::AtMost(deep()), Entry::At)
     };
-    run.check()?;
-    Ok(patches.par_iter().find_map_first(inside))
+    let mut deepest = 0.0;
+    for some in patches.chunks(16 * AT_ONCE) {
+        run.check()?;
+        for found in some.par_iter().map(look).collect::<Vec<Entry>>() {
+            match found {
+                Entry::At(_) => return Ok(found),
+                Entry::AtMost(at_most) => deepest = f64::max(deepest, at_most),
+            }
+        }
+    }
+    Ok(Entry::AtMost(deepest))
 }
 
 /// Looks for a point of both solids just below the surface of `from`.
@@ -240,5 +257,31 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
             next.par_extend(chunk.par_iter().flat_map_iter(|piece| piece.divided(patches, below)));
         }
         pieces = next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Solid;
+    use crate::distance::{compiled, surface_of};
+
+    #[test]
+    fn of_a_sheet_within_another_solid_it_is_told_how_deep_it_may_be() {
+        // Moved by what does not count all points are through the sheet, and those that are not
+        // moved are at its surface.
+        let solids = [Solid::cuboid([1.0, 1.0, 2f64.powi(-7)]), Solid::sphere(10.0)];
+        let programs = solids.each_ref().map(|solid| compiled(solid).unwrap());
+        let surfaces = solids.each_ref().map(|solid| surface_of(solid).unwrap());
+        let [sheet, ball] = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
+        match within(&sheet, &ball, 1.0, &Run::default()).unwrap() {
+            Entry::At(p) => assert!(sheet.program.value(p) > 0.0 && p.length() < 9.0, "{p}"),
+            Entry::AtMost(deep) => assert!(deep >= 10.0, "{deep}"),
+        }
+        // One that is beyond it is not.
+        let beyond = Solid::sphere(1.0).translate([20.0, 0.0, 0.0]);
+        let (program, surface) = (compiled(&beyond).unwrap(), surface_of(&beyond).unwrap());
+        let found = within(&Side::new(&program, &surface), &ball, 1.0, &Run::default()).unwrap();
+        assert!(matches!(found, Entry::AtMost(deep) if deep == 0.0));
     }
 }
