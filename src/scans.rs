@@ -134,10 +134,11 @@
 //!
 //! Published times are of Python. `cargo bench --bench fit` prints those of this crate: on one
 //! thread of a machine that did other things as well, 0.6 ms clean, 1.3 of 60 % outliers, 2 of
-//! views, 3.1 on a table, 1.3 deformed, some 12 for a supershape, and 40 of a million points. Published
-//! residuals, symmetry numbers and rational radii are options ([`Cost`](crate::fit::Cost),
-//! [`Symmetry`](crate::fit::Symmetry), [`Start`](crate::fit::Start)), so that the comparison can be
-//! repeated; [`fit`](crate::fit) says what they reach with this search.
+//! views, 3.1 on a table, 1.3 deformed, some 12 for a supershape, and 40 of a million points.
+//! Published residuals, symmetry numbers and rational radii are options
+//! ([`Cost`](crate::fit::Cost), [`Symmetry`](crate::fit::Symmetry), [`Start`](crate::fit::Start)),
+//! so that the comparison can be repeated; [`fit`](crate::fit) says what they reach with this
+//! search.
 //!
 //! Sources: F. Solina, R. Bajcsy, *Recovery of parametric models from range images: the case for
 //! superquadrics with global deformations* (1990); W. Liu, Y. Wu, S. Ruan, G. Chirikjian, *Robust

@@ -59,7 +59,7 @@ impl Scaled {
 
 /// Sizes of clouds of which every fit is a solid: what is found is from 10⁻⁴ to 10² times as large,
 /// and lengths of solids are from 10⁻⁹ to 10⁹.
-const SIZES: [f64; 2] = [1e-5, 1e7];
+pub(super) const SIZES: [f64; 2] = [1e-5, 1e7];
 
 /// Points further from the middle than so many times the median distance from it are not of the
 /// object: a single one would make the size of the cloud its own.
@@ -68,9 +68,11 @@ const STRAY: f64 = 100.0;
 /// So many points tell where the middle is, and how far from it points are.
 const ASKED: usize = 512;
 
-/// The points without those that are far from all others. Half of the points are never strays.
+/// The points without those that are far from all others. Half of the points are hardly ever
+/// strays: the middle is among those that most of a random choice are near.
 fn without_strays(all: &[DVec3], order: Vec<usize>) -> Vec<usize> {
-    let some: Vec<DVec3> = order.iter().step_by(order.len().div_ceil(ASKED).max(1)).map(|i| all[*i]).collect();
+    // At random: a file may have strays at regular places.
+    let some: Vec<DVec3> = Random::new(0).chosen(order.len(), ASKED).into_iter().map(|k| all[order[k]]).collect();
     let middle = DVec3::from_array([0, 1, 2].map(|axis| {
         let mut along: Vec<f64> = some.iter().map(|p| p[axis]).collect();
         median(&mut along)
@@ -78,4 +80,22 @@ fn without_strays(all: &[DVec3], order: Vec<usize>) -> Vec<usize> {
     let typical = median(&mut some.iter().map(|p| p.distance(middle)).collect::<Vec<_>>());
     let is_near = |i: &usize| typical == 0.0 || all[*i].distance(middle) <= STRAY * typical;
     order.into_iter().filter(is_near).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever their order: every third point is a stray.
+    #[test]
+    fn strays_may_be_at_regular_places() {
+        let mut random = Random::new(4);
+        let mut point = |i: u32| {
+            let p = DVec3::new(random.unit(), random.unit(), random.unit());
+            if i % 3 == 0 { 1e5 * (p + 1.0) } else { p }
+        };
+        let points: Vec<DVec3> = (0..1200).map(&mut point).collect();
+        let kept = without_strays(&points, (0..1200).collect());
+        assert!(kept.len() == 800 && kept.iter().all(|i| i % 3 != 0), "{}", kept.len());
+    }
 }

@@ -36,8 +36,8 @@ impl Covariance {
         Some(self.value(at, at).max(0.0).sqrt())
     }
 
-    /// The inverse of JᵀWJ (its lower triangle) of a sample, where the whole cloud has `share` times
-    /// as many points; each parameter in units of its own.
+    /// The inverse of JᵀWJ (its lower triangle) of a sample, where the whole cloud has `share`
+    /// times as many points; each parameter in units of its own.
     pub(super) fn from_normal<const N: usize>(
         names: [&'static str; N],
         normal: &[[f64; N]; N],

@@ -53,8 +53,8 @@ mod tests {
     use crate::distance::compiled_with;
     use crate::{Solid, deg};
 
-    /// Where the solid's value is its distance, feet are the nearest points of the surface, at edges
-    /// and far away as well.
+    /// Where the solid's value is its distance, feet are the nearest points of the surface, at
+    /// edges and far away as well.
     #[test]
     fn feet_are_the_nearest_points_where_values_are_distances() {
         let pin = Solid::cylinder(0.4, 2.0).rotate_x(deg(40.0)).translate([0.3, 0.1, 0.8]);

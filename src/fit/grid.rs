@@ -36,8 +36,8 @@ impl Grid<'_> {
         let (starts, order, sorted) = (Vec::new(), Vec::new(), Vec::new());
         let mut grid = Grid { points, low, cell, inverse, size, starts, order, sorted };
         let cells = (size.x * size.y * size.z) as usize;
-        // While points are put in place, the second entry from a cell on is where its next one goes:
-        // in the end that is where the cell after it begins.
+        // While points are put in place, the second entry from a cell on is where its next one
+        // goes: in the end that is where the cell after it begins.
         grid.starts = vec![0; cells + 2];
         let homes: Vec<u32> = points.iter().map(|p| grid.index(grid.cell_of(*p)) as u32).collect();
         for &home in &homes {

@@ -9,9 +9,9 @@
 //! A shape gives `ln G`, its gradient, and its derivatives by the shape's parameters; all residuals
 //! follow from these. The sums run on SIMD lanes, in `f32` for the search and in `f64` for the last
 //! steps; two vectors at a time, as one alone waits for itself. What computes with lanes is a
-//! function that is always inlined, not a closure: those are compiled without the vectors' features,
-//! and each of their operations is a call. The sign of residuals is that of lengths here: negative
-//! inside.
+//! function that is always inlined, not a closure: those are compiled without the vectors'
+//! features, and each of their operations is a call. The sign of residuals is that of lengths here:
+//! negative inside.
 //!
 //! Sources: F. Solina, R. Bajcsy, *Recovery of parametric models from range images* (1990);
 //! A. Gross, T. Boult, *Error of fit measures for recovering parametric solids* (1988).
@@ -120,6 +120,9 @@ impl Chance {
     }
 }
 
+/// What chances count to: one in so many powers of 2.
+const FARTHEST: f64 = 100.0;
+
 /// Chances as weights, which are kept.
 struct Chances<'a, E> {
     chance: Chance,
@@ -133,7 +136,8 @@ impl<E: Number> Weights<E> for Chances<'_, E> {
     fn at<S: Simd>(&mut self, simd: S, at: Range<usize>, d: Twice<E::Vector<S>>) -> Twice<E::Vector<S>> {
         let counts = <Twice<E::Vector<S>> as Lanes>::load(simd, &self.counts[at.clone()]);
         let Chance { curve, shift } = self.chance;
-        let odds = d.square().scale_add(curve, d.lift(shift)).exp2();
+        // So far off all are out alike; chances below the normal numbers would only be slow.
+        let odds = d.square().scale_add(curve, d.lift(shift)).min(d.lift(FARTHEST)).exp2();
         let chances = counts / (odds + 1.0);
         chances.store(&mut self.kept[at]);
         chances
@@ -230,13 +234,13 @@ fn pass_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
 ) -> Sums<N> {
     let width = <Twice<E::Vector<S>> as Lanes>::WIDTH;
     let zero = <E::Vector<S> as Lanes>::splat(simd, 0.0);
-    // Weight, square, gradient, and the lower triangle of the second derivatives, one after another.
+    const { assert!(2 + N + N * (N + 1) / 2 <= SUMS, "more sums than there is room for") };
+    // Weight, square, gradient, and the lower triangle of the second derivatives, one after
+    // another.
     let mut sums = [zero; SUMS];
-    let [xs, ys, zs] = samples.columns();
     for start in (0..samples.padded()).step_by(width) {
         let at = start..start + width;
-        let load = |from: &[E]| <Twice<E::Vector<S>> as Lanes>::load(simd, &from[at.clone()]);
-        let (residual, rows) = terms::<_, M, N>(model, [load(xs), load(ys), load(zs)], cost);
+        let (residual, rows) = terms::<_, M, N>(model, places(simd, samples, at.clone()), cost);
         let weight = weights.at(simd, at.clone(), residual);
         residual.store(&mut residuals[at]);
         sums[0] = sums[0] + weight.0 + weight.1;
@@ -264,6 +268,17 @@ fn pass_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
         at += i + 1;
     }
     sums
+}
+
+/// The coordinates of these points.
+#[inline(always)]
+fn places<S: Simd, E: Number>(simd: S, samples: &Samples<E>, at: Range<usize>) -> [Twice<E::Vector<S>>; 3] {
+    let [xs, ys, zs] = samples.columns();
+    [
+        <Twice<E::Vector<S>> as Lanes>::load(simd, &xs[at.clone()]),
+        <Twice<E::Vector<S>> as Lanes>::load(simd, &ys[at.clone()]),
+        <Twice<E::Vector<S>> as Lanes>::load(simd, &zs[at]),
+    ]
 }
 
 /// Sums of the largest model, in whole blocks of the widest vectors.
@@ -314,13 +329,11 @@ fn residuals_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
     residuals: &mut [E],
 ) {
     let width = <Twice<E::Vector<S>> as Lanes>::WIDTH;
-    let [xs, ys, zs] = samples.columns();
     for start in (0..samples.padded()).step_by(width) {
         let at = start..start + width;
-        let load = |from: &[E]| <Twice<E::Vector<S>> as Lanes>::load(simd, &from[at.clone()]);
         // What the derivatives take is not computed where nothing reads them.
-        let (residual, _) = terms::<_, M, N>(model, [load(xs), load(ys), load(zs)], cost);
-        residual.store(&mut residuals[at.clone()]);
+        let (residual, _) = terms::<_, M, N>(model, places(simd, samples, at.clone()), cost);
+        residual.store(&mut residuals[at]);
     }
 }
 

@@ -1,9 +1,9 @@
 //! Which points are far from their neighbours, compared with how far those are from theirs.
 //!
-//! A point's reach is its distance to the eighth nearest point, itself being the first. It is lonely
-//! if that is much more than the mean of those eight. The points of a cell are asked at once, on SIMD
-//! lanes: each candidate of the cells about it sinks into a sorted list of the nearest, without a
-//! branch.
+//! A point's reach is its distance to the eighth nearest point, itself being the first. It is
+//! lonely if that is much more than the mean of those eight. The points of a cell are asked at
+//! once, on SIMD lanes: each candidate of the cells about it sinks into a sorted list of the
+//! nearest, without a branch.
 
 use fearless_simd::{Level, Simd, dispatch};
 use rvachev_num::Real;

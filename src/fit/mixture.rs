@@ -151,7 +151,13 @@ impl<M: Copy> Mixture<M> {
             (*self, weighed) = (next, found);
         }
         self.learn::<f64>(weighed.sums.weight, weighed.sums.square, how.all);
-        if how.cost != Cost::Normal {
+        if how.cost == Cost::Normal {
+            // By the noise and the share as they are now, as points are that were not searched.
+            let chance = self.chance();
+            for (p, d) in weighed.chances.iter_mut().zip(&weighed.residuals) {
+                *p = chance.at(*d);
+            }
+        } else {
             weighed = self.weigh(samples, Cost::Normal);
             passes += 1;
         }

@@ -72,12 +72,12 @@
 //! | condition | m right | IoU ≥ .99 | median IoU | points evaluated |
 //! |---|---|---|---|---|
 //! | clean | 99.5 | 97.5 | 1.0000 | 320 k |
-//! | 1 % noise | 99.0 | 96.5 | 0.9969 | 330 k |
-//! | + 20 % outliers | 96.0 | 93.5 | 0.9970 | 356 k |
+//! | 1 % noise | 99.0 | 98.0 | 0.9970 | 298 k |
+//! | + 20 % outliers | 95.0 | 93.5 | 0.9968 | 311 k |
 //! | 1 % noise, one half | 93.5 | 88.0 | 0.9959 | 416 k |
-//! | 1 % noise, rational start | 99.0 | 96.5 | 0.9969 | 334 k |
-//! | clean, by sections | 88.5 | 80.5 | 1.0000 | 162 k |
-//! | 1 % noise, by sections | 47.5 | 36.0 | 0.9412 | 157 k |
+//! | 1 % noise, rational start | 98.5 | 98.0 | 0.9970 | 301 k |
+//! | clean, by sections | 87.5 | 79.0 | 1.0000 | 136 k |
+//! | 1 % noise, by sections | 48.5 | 37.0 | 0.9392 | 131 k |
 //!
 //! The m of a solid that another m describes as well (IoU ≥ .999) counts as right. A half is what
 //! is on one side of a plane nearly along the axis, a little behind it. The rational start, which
@@ -130,9 +130,9 @@
 //! From 24 rotations of the principal axes of the dense points, Gauss–Newton steps on f/|∇f| with
 //! weights whose width falls from 0.6 of the size. The last of them are on the distance to the foot
 //! of each point: the true one where the solid's value is the distance, elsewhere where Newton's
-//! steps lead, which is exact near the surface. Then from random poses, where that leaves more noise
-//! than the scan's neighbourhoods have. Of 60 random parts (a block with three pins) in random poses
-//! are found:
+//! steps lead, which is exact near the surface. Then from random poses, where that leaves more
+//! noise than the scan's neighbourhoods have. Of 60 random parts (a block with three pins) in
+//! random poses are found:
 //!
 //! | scan | found | wrong without saying so |
 //! |---|---|---|

@@ -10,8 +10,8 @@ use super::random::Random;
 const TRIES: usize = 100;
 const JUDGES: usize = 256;
 
-/// A plane is dropped that fewer than these of the first judges are on, or fewer of all of them than
-/// that: a table has many more.
+/// A plane is dropped that fewer than these of the first judges are on, or fewer of all of them
+/// than that: a table has many more.
 const FIRST: usize = 64;
 const FEWEST: usize = 6;
 const LEAST: usize = 20;

@@ -63,12 +63,12 @@ pub struct RegisterSettings {
     pub seed: u64,
     /// Whether the scan may be larger or smaller than the solid. Default: no.
     pub scale: bool,
-    /// What is minimised: [`Cost::Normal`], the distance, which is the default (to first order in the
-    /// search, to the foot of each point in the last steps); or [`Cost::Eq15`],
-    /// the published field, for comparisons. Its parts are the operands of unions, weighted by the
-    /// semi-axes of their leaves: of a superellipsoid or supershape its own, of others half the
-    /// sides of their boxes. It is not the distance, and a worse judge of poses; points far from
-    /// the surface count less and less with either.
+    /// What is minimised: [`Cost::Normal`], the distance, which is the default (to first order in
+    /// the search, to the foot of each point in the last steps); or [`Cost::Eq15`], the published
+    /// field, for comparisons. Its parts are the operands of unions, weighted by the semi-axes of
+    /// their leaves: of a superellipsoid or supershape its own, of others half the sides of their
+    /// boxes. It is not the distance, and a worse judge of poses; points far from the surface count
+    /// less and less with either.
     pub cost: Cost,
 }
 

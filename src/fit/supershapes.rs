@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!     axes         three principal ones and three of the superellipsoid, ranked by their harmonics
-//!     starts       two symmetry numbers an axis, phases and exponents by the radii       128 points
-//!     best five    two of a symmetry number at most                                      384
-//!     extensions   other meridians, untied exponents, twice the number, other phases     128, 384
+//!     starts       two symmetry numbers an axis, phases and exponents by the radii      128 points
+//!     best five    two of a symmetry number at most                                     384
+//!     extensions   other meridians, untied exponents, twice the number, other phases    128, 384
 //! ```
 
 use std::f64::consts::{FRAC_PI_2, LN_2, TAU};

@@ -184,8 +184,8 @@ fn regular(polygon: &[DVec2], size: f64) -> Option<(f64, Base)> {
     (most < OFF * size).then_some((most, Base::Regular { centre, angle, sides: sides as u32, radius }))
 }
 
-/// The rectangle with rounded corners whose sides are along most of a ring, and how far it is off at
-/// most.
+/// The rectangle with rounded corners whose sides are along most of a ring, and how far it is off
+/// at most.
 fn rounded(ring: &[DVec2], even: &[DVec2], size: f64) -> Option<(f64, Base)> {
     // Sides at right angles to each other agree in four times their angles, and those of an arc
     // cancel.
@@ -363,7 +363,8 @@ mod tests {
         assert!((*size - DVec2::new(0.3, 0.1)).length() < 2e-3 && (radius - 0.05).abs() < 1e-3, "{found:?}");
     }
 
-    /// Three corners round and one square: a rounded rectangle nearly, an outline with arcs exactly.
+    /// Three corners round and one square: a rounded rectangle nearly, an outline with arcs
+    /// exactly.
     #[test]
     fn arcs_are_there_beside_what_fits_nearly() {
         let round = |x: f64, y: f64, from: f64| {

@@ -149,11 +149,20 @@ fn make_equal(numbers: &mut [Vec<f64>], mut loose: Vec<Loose>) {
     let mut rest = &loose[..];
     while let Some(first) = rest.first() {
         let least = value(numbers, first).abs();
-        let is_equal = |l: &&Loose| value(numbers, l).abs() - least <= l.within.min(first.within);
+        // The number that leaves least open tells how much all of them may be moved.
+        let mut within = first.within;
+        let is_equal = |l: &&Loose| {
+            let common = within.min(l.within);
+            let is_equal = value(numbers, l).abs() - least <= common;
+            if is_equal {
+                within = common;
+            }
+            is_equal
+        };
         let (equal, others) = rest.split_at(rest.iter().take_while(is_equal).count());
         let mean = equal.iter().map(|l| value(numbers, l).abs()).sum::<f64>() / equal.len() as f64;
         // A power of ten that is no more than a part of what is open.
-        let places = -(DIGITS * first.within).log10().floor();
+        let places = -(DIGITS * within).log10().floor();
         let unit = 10f64.powi(places.abs() as i32);
         let mean = if places > 0.0 { (mean * unit).round() / unit } else { (mean / unit).round() * unit };
         for l in equal {
@@ -214,5 +223,19 @@ mod tests {
         assert!(
             changes.iter().any(|change| change.leaf == 1 && change.measure == Measure::Diameter && change.to == 7.0)
         );
+    }
+
+    /// What leaves little open is moved by no more than that, though it is equal to what leaves much
+    /// open.
+    #[test]
+    fn equal_numbers_stay_within_what_each_leaves_open() {
+        let [found, within] = [[10.0034, 10.0038, 10.0044], [0.1, 0.001, 0.0001]];
+        let mut numbers = vec![found.to_vec()];
+        let loose = (0..3).map(|nth| Loose { leaf: 0, nth, within: within[nth] }).collect();
+        make_equal(&mut numbers, loose);
+        assert!(numbers[0][0] == numbers[0][1] && numbers[0][1] != numbers[0][2], "{numbers:?}");
+        for nth in 0..3 {
+            assert!((numbers[0][nth] - found[nth]).abs() <= 1.1 * within[nth], "{numbers:?}");
+        }
     }
 }

@@ -50,6 +50,11 @@ pub(super) fn extent(s: &Supershape) -> DVec3 {
     s.bounds().size()
 }
 
+/// The same of one that is extruded.
+pub(super) fn across(base: &Superpolygon) -> DVec2 {
+    base.bounds().size().truncate()
+}
+
 /// The ends along z of what is extruded or turned, first of all its numbers: x, y, low, high.
 fn posed(at: DVec3, height: f64) -> Vec<(Measure, f64)> {
     let [x, y, z] = at.to_array();
@@ -148,7 +153,7 @@ impl Leaf {
                 let radii = arcs.map(|radius| (Measure::Radius, radius.abs()));
                 posed(at, *height).into_iter().skip(2).chain(corners).chain(radii).collect()
             }
-            Shape::Supershape { base, height } => [posed(at, *height), vec![(Measure::Radius, base.radius())]].concat(),
+            Shape::Supershape { base, height } => [posed(at, *height), vec![(Measure::Size, across(base).x)]].concat(),
             Shape::Superellipsoid(s) => [places(at), sizes(s.semi_axes())].concat(),
             Shape::Supersolid(s) => [places(at), sizes(0.5 * extent(s))].concat(),
         }
@@ -217,7 +222,8 @@ impl Leaf {
             }
             Shape::Supershape { base, .. } => {
                 let (at, height, rest) = upright()?;
-                (Shape::Supershape { base: Superpolygon::new(base.curve(), *rest.first()?), height }, at)
+                let radius = base.radius() * rest.first()? / across(base).x;
+                (Shape::Supershape { base: Superpolygon::new(base.curve(), radius), height }, at)
             }
             Shape::Superellipsoid(s) => {
                 let [x, y, z, a, b, c] = *numbers.first_chunk::<6>()?;
@@ -310,6 +316,13 @@ mod tests {
         assert!((DVec3::from_slice(&numbers[3..]) - size).abs().max_element() < 1e-9, "{numbers:?}, {size}");
         let wide = leaf.made_of(&[0.0, 0.0, 0.0, 2.0 * numbers[3], numbers[4], numbers[5]]).unwrap();
         assert!((wide.solid().bounds().unwrap().size().x - 2.0 * size.x).abs() < 1e-9);
+        let base = Superpolygon::new(Gielis::new(5.0, 2.0, 4.0, 4.0), 0.2);
+        let leaf = Leaf { shape: Shape::Supershape { base, height: 0.3 }, ..leaf };
+        let mut numbers: Vec<f64> = leaf.measures().into_iter().map(|(_, v)| v).collect();
+        let size = leaf.solid().bounds().unwrap().size();
+        assert!((numbers[4] - size.x).abs() < 1e-9, "{numbers:?}, {size}");
+        numbers[4] *= 2.0;
+        assert!((leaf.made_of(&numbers).unwrap().solid().bounds().unwrap().size().x - 2.0 * size.x).abs() < 1e-9);
     }
 
     #[test]

@@ -28,6 +28,7 @@ use super::times::{Clock, PartTimes};
 use super::topology::{Topologies, mended};
 use super::{profiles, residual, superellipsoids};
 use crate::field::COORDINATE_LIMIT;
+use crate::fit::cloud::SIZES;
 use crate::fit::grid::extent;
 use crate::geom::{Mesh, PointCloud};
 use crate::{Bounds, Cancelled, Run};
@@ -207,8 +208,8 @@ fn check(points: &[DVec3]) -> Result<(), FitError> {
     }
     let [low, high] = extent(points);
     let size = low.distance(high);
-    if !(1e-6..=1e8).contains(&size) {
-        let (property, allowed) = ("in size", "0.000001 to 100000000");
+    if !(SIZES[0]..=SIZES[1]).contains(&size) {
+        let (property, allowed) = ("in size", "0.00001 to 10000000");
         return Err(FitError::Extent { property, value: size, allowed });
     }
     check_depth(points)

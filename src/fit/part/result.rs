@@ -100,7 +100,9 @@ impl PartFit {
     /// open; cuts that ended in the open, or in the face that they go through, or of a part from
     /// points but for a skin, which were lengthened; and leaves that were a little off the part's
     /// axes, which were turned to them. Numbers are not changed, and leaves that they leave nothing
-    /// to do for not left out, where that would take genus or shells farther from the input's.
+    /// to do for not left out, where that would take genus or shells farther from the input's, as
+    /// far as these are known: of points, or an open mesh, they are not, and what is smaller than
+    /// a 128th of the part's longest side may be missed.
     #[must_use]
     pub fn snaps(&self) -> &[Snap] {
         &self.snaps
@@ -163,8 +165,9 @@ impl PartFit {
 
     /// How many numbers the tree has: 3 of a half-space, 4 of a sphere, 7 of a cylinder or a torus,
     /// 8 of a cone, 9 of a box or a prism, 10 of a rounded rectangle, 11 of a superellipsoid, 12 of
-    /// a supershape, 17 of a solid one, 7 and 2 a corner and 1 an arc of a profile. Of a [pattern](PartFit::patterns) it is those
-    /// of one leaf and of the [layout](super::Layout::parameters).
+    /// a supershape, 17 of a solid one, 7 and 2 a corner and 1 an arc of a profile. Of a
+    /// [pattern](PartFit::patterns) it is those of one leaf and of the
+    /// [layout](super::Layout::parameters).
     #[must_use]
     pub fn parameters(&self) -> usize {
         let all: usize = self.leaves.iter().map(PartLeaf::parameters).sum();

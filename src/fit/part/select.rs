@@ -30,7 +30,7 @@ const CUTS: usize = 16;
 const REBUILT: usize = 4;
 
 /// What a leaf costs beside its own price in the second search, in parameters, which is for trees
-/// of so many leaves: of more it takes long, and what takes more is of no leaves.
+/// of so many leaves: of more it takes long.
 const DEARER: f64 = 7.0;
 const SEARCHED_AGAIN: std::ops::RangeInclusive<usize> = 4..=16;
 

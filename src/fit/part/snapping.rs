@@ -1,9 +1,11 @@
 //! A model with the lengths that it is meant to have, as far as it stays what it is.
 //!
 //! ```text
-//!     found  →  laid through the vertices  →  round numbers, cuts that go through  →  leaves that do nothing left out
-//!                                                                                     │
-//!     what spoils genus or shells is taken back: first leaves come back, then lengths ┘
+//!     found  →  laid through the vertices  →  round numbers, cuts that go through
+//!                                                    │
+//!               leaves that do nothing left out  ←───┘
+//!                      │
+//!                      └  what spoils genus or shells is taken back: leaves, then lengths
 //! ```
 
 use std::collections::BTreeMap;
@@ -11,7 +13,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::super::error::FitError;
-use super::intent::{Meant, changes, intended};
+use super::intent::{Change, Meant, changes, intended};
 use super::leaf::Leaf;
 use super::model::{Model, Step};
 use super::samples::Samples;
@@ -23,6 +25,9 @@ use crate::{Cancelled, Run};
 
 /// The error may rise by so much where a leaf does nothing, or a cut goes through.
 const IDLE: f64 = 1e-4;
+
+/// Ends that are moved by less, in diagonals, are where they were: it is rounding.
+const GRAIN: f64 = 1e-6;
 
 /// A model, and what leaves of it are meant to be, by candidates.
 pub(super) struct Snapped {
@@ -141,7 +146,10 @@ pub(super) fn opened(
             let next = selector.model(steps);
             if next.cost < model.cost + IDLE {
                 let numbers: Vec<f64> = leaf.measures().into_iter().map(|(_, v)| v).collect();
-                meant.insert(which, Meant { changes: changes(i, &old, &numbers), leaf });
+                // The other end is the same but for the last digits.
+                let is_moved = |change: &Change| (change.to - change.from).abs() > GRAIN * size;
+                let own = changes(i, &old, &numbers).into_iter().filter(is_moved).collect();
+                meant.insert(which, Meant { changes: own, leaf });
                 model = next;
             }
         }
@@ -151,12 +159,13 @@ pub(super) fn opened(
 
 #[cfg(test)]
 mod tests {
-    use glam::DMat3;
+    use glam::{DAffine3, DMat3};
 
+    use super::super::intent::Changed;
     use super::super::pool::Pool;
     use super::super::select_tests::{PRICE, asked};
     use super::*;
-    use crate::CancelToken;
+    use crate::{CancelToken, MeshSettings, Solid};
 
     #[test]
     fn what_spoils_the_topology_is_taken_back() {
@@ -181,5 +190,27 @@ mod tests {
         assert_eq!(kept(&|steps| u64::from(steps != found)), found);
         // What was no better before is left as it is.
         assert_eq!(kept(&|_| 1), exact[..2]);
+    }
+
+    /// A blind hole under a skin: only the end that is moved is told.
+    #[test]
+    fn ends_that_stay_are_not_told() {
+        let turn = DAffine3::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.7);
+        let block = Leaf::cuboid(DMat3::IDENTITY, [DVec3::new(-0.4, -0.3, 0.0), DVec3::new(0.4, 0.3, 0.1)]);
+        let hole = |end: f64| Leaf::cylinder(DVec3::Z, DVec3::new(0.1, 0.07, 0.0), 0.1, [0.05, end]).turned_by(&turn);
+        let block = block.turned_by(&turn);
+        let queries = asked(&[(true, block.clone()), (false, hole(0.2))], DVec3::splat(0.5));
+        let mut pool = Pool::new(PRICE);
+        let leaves = [(true, block), (false, hole(0.099))];
+        let steps = leaves.map(|(adds, leaf)| Step { adds, which: pool.add(leaf, &queries, [true; 2], None) });
+        let mut selector = Selector { pool, queries: &queries, grids: Vec::new(), cancel: CancelToken::default() };
+        let model = selector.model(steps.to_vec());
+        let mesh = Solid::cuboid([1.0; 3]).mesh(&MeshSettings::default()).unwrap();
+        let samples = Samples::of_mesh(&mesh, 0, &Run::default()).unwrap();
+        let samples = Samples { centre: DVec3::new(7.1, -3.3, 12.7), size: 61.7, ..samples };
+        let meant = opened(&mut selector, model, 0.002, &samples, &Run::default()).unwrap().meant;
+        let [Meant { changes, .. }] = &meant.into_values().collect::<Vec<_>>()[..] else { panic!("one is opened") };
+        let [change] = changes[..] else { panic!("{changes:?}") };
+        assert!(change.of == Changed::Number(3) && change.to > change.from + 0.3, "{change:?}");
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::leaf::{Leaf, Shape};
-use super::measures::extent;
+use super::measures::{across, extent};
 use super::patterns::{Layout, Pattern};
 use super::result::PartLeaf;
 use super::through::{End, ends_in_the_open};
@@ -145,7 +145,7 @@ fn outline(leaf: &Leaf) -> String {
             (corners, arcs) => format!("outline of {corners} corners, {arcs} of its sides arcs"),
         },
         Shape::Supershape { base, .. } => {
-            format!("supershape of {} arms, radius {}", length(base.curve().m), length(base.radius()))
+            format!("supershape of {} arms, {}", length(base.curve().m), joined(across(base).to_array()))
         }
         _ => joined((2.0 * leaf.reach()).to_array()),
     }

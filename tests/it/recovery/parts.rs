@@ -250,6 +250,11 @@ fn what_is_no_solid_is_told() {
     let none = Mesh::new(Vec::new(), Vec::new()).unwrap();
     assert!(matches!(part(&none, &PartSettings::default()), Err(FitError::TooFew { .. })));
 
+    // Its leaves might be smaller than solids may be.
+    let tiny = block.positions().iter().map(|p| 1e-6 * *p).collect();
+    let tiny = Mesh::new(tiny, block.triangles().to_vec()).unwrap();
+    assert!(matches!(part(&tiny, &PartSettings::default()), Err(FitError::Extent { .. })));
+
     let settings = PartSettings { parameter_cost: f64::NAN, ..PartSettings::default() };
     let error = part(&block, &settings).unwrap_err();
     assert_eq!(error.to_string(), "parameter_cost is NaN; allowed: 0.000001 to 0.1");
@@ -435,5 +440,5 @@ fn fifty_random_parts() {
         few += usize::from(fit.leaf_count() <= 12);
     }
     println!("IoU ≥ .97: {right}, genus: {same}, ≤ 12 leaves: {few}");
-    assert!(right >= 49 && same >= 45, "{right}, {same}");
+    assert!(right >= 49 && same >= 47, "{right}, {same}");
 }
