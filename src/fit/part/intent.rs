@@ -225,8 +225,8 @@ mod tests {
         );
     }
 
-    /// What leaves little open is moved by no more than that, though it is equal to what leaves much
-    /// open.
+    /// What leaves little open is moved by no more than that, though it is equal to what leaves
+    /// much open.
     #[test]
     fn equal_numbers_stay_within_what_each_leaves_open() {
         let [found, within] = [[10.0034, 10.0038, 10.0044], [0.1, 0.001, 0.0001]];
