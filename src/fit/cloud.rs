@@ -92,7 +92,7 @@ mod tests {
         let mut random = Random::new(4);
         let mut point = |i: u32| {
             let p = DVec3::new(random.unit(), random.unit(), random.unit());
-            if i % 3 == 0 { 1e5 * (p + 1.0) } else { p }
+            if i.is_multiple_of(3) { 1e5 * (p + 1.0) } else { p }
         };
         let points: Vec<DVec3> = (0..1200).map(&mut point).collect();
         let kept = without_strays(&points, (0..1200).collect());
