@@ -133,8 +133,8 @@
 //! | on a table, 40 % of the points | 100 | 86.5 | |
 //!
 //! Published times are of Python. `cargo bench --bench fit` prints those of this crate: on one
-//! thread of a machine that did other things as well, 0.6 ms clean, 1.3 of 60 % outliers, 2 of
-//! views, 3.1 on a table, 1.3 deformed, some 12 for a supershape, and 40 of a million points.
+//! thread of a machine that did other things as well, 0.4 ms clean, 1.0 of 60 % outliers, 1.0 of
+//! views, 1.9 on a table, 0.9 deformed, 8.3 for a supershape, and 29 of a million points.
 //! Published residuals, symmetry numbers and rational radii are options
 //! ([`Cost`](crate::fit::Cost), [`Symmetry`](crate::fit::Symmetry), [`Start`](crate::fit::Start)),
 //! so that the comparison can be repeated; [`fit`](crate::fit) says what they reach with this
