@@ -100,8 +100,8 @@ impl Solid {
     /// are measured may be missed here too.
     ///
     /// Each surface takes as long as a mesh, once. After that a clearance takes milliseconds where
-    /// one place is nearest, and some seconds where a gap is even all over, or more between threads
-    /// and the like. The volume of an overlap is found as by
+    /// one place is nearest, some tenths of a second where a gap is even all over, and seconds
+    /// between threads and the like. The volume of an overlap is found as by
     /// [`measure`](Solid::measure).
     ///
     /// # Errors
