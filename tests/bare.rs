@@ -2,7 +2,7 @@
 //! `cargo test --no-default-features --test bare`. With features these are modules of `it`, which
 //! takes far longer to compile.
 
-#![allow(dead_code, reason = "helpers are for all modules of `it`")]
+#![allow(dead_code, unused_imports, reason = "helpers are for all modules of `it`")]
 
 mod it {
     mod building;
