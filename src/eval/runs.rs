@@ -60,6 +60,13 @@ impl Runs {
         below.map(move |number| Block { level: level - 1, number })
     }
 
+    /// What boxes are made of: boxes, and the patches of single runs.
+    pub(crate) fn opened(&self, blocks: &[Block]) -> (Vec<Block>, Vec<usize>) {
+        let parts = blocks.iter().flat_map(|block| self.parts(*block)).collect();
+        let single = blocks.iter().filter(|block| block.level == 0);
+        (parts, single.flat_map(|block| self.patches(*block)).collect())
+    }
+
     /// The patches in it.
     pub(crate) fn patches(&self, block: Block) -> std::ops::Range<usize> {
         let size = RUN << block.level;

@@ -79,24 +79,34 @@ struct Search<'a> {
 
 /// The nearest points of both surfaces; of the first those near its patches.
 pub(super) fn search(from: &Side<'_>, to: &Side<'_>, run: &Run) -> Result<Found, Cancelled> {
-    let slack = from.fineness() + to.fineness();
-    let is_gentle = to.is_gentle;
-    let points = refined(from, to, greedy(from, to));
-    let (least, leans) = (f64::INFINITY, false);
-    let nearest = (f64::INFINITY, points[0]);
-    let mut search = Search { from, to, slack, is_gentle, points, nearest, least, leans, within: None };
+    let mut search = Search::new(from, to);
     let near = search.near(run)?;
     search.divide(near, run)?;
     search.learn(0.0);
     let (distance, loss) = (search.known(), search.loss());
-    let Search { points, least, leans, within, .. } = search;
+    let Search { points, least, leans, within, slack, .. } = search;
     let common = within.and_then(|p| common(from, to, slack, p));
     // A sheet within the other has no point below its surface by what counts.
     let least = if within.is_some() { 0.0 } else { least.min(distance).max(0.0) };
     Ok(Found { points, least, leans, loss, common })
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(from: &'a Side<'a>, to: &'a Side<'a>) -> Search<'a> {
+        let points = refined(from, to, greedy(from, to));
+        Search {
+            from,
+            to,
+            slack: from.fineness() + to.fineness(),
+            is_gentle: to.is_gentle,
+            points,
+            nearest: (f64::INFINITY, points[0]),
+            least: f64::INFINITY,
+            leans: false,
+            within: None,
+        }
+    }
+
     fn known(&self) -> f64 {
         self.points[0].distance(self.points[1])
     }
@@ -189,20 +199,16 @@ impl Search<'_> {
                 places.par_extend(some.par_iter().with_min_len(AT_ONCE / 16).map(place));
             }
             let open = self.sift(&blocks, &places, |block| patches.point(runs.patches(*block).start, [0.0; 2]));
-            blocks.clear();
-            for block in open {
-                let before = blocks.len();
-                blocks.extend(runs.parts(block));
-                if blocks.len() == before {
-                    near.extend(runs.patches(block));
-                }
-            }
+            let patches;
+            (blocks, patches) = runs.opened(&open);
+            near.extend(patches);
         }
         Ok(near)
     }
 
     /// Divides patches until what is left is not nearer than what is known, or there is too much.
-    fn divide(&mut self, near: Vec<usize>, run: &Run) -> Result<(), Cancelled> {
+    /// Tells how many points were asked.
+    fn divide(&mut self, near: Vec<usize>, run: &Run) -> Result<usize, Cancelled> {
         let (patches, others) = (&self.from.surface.patches, &self.to.surface.patches);
         let mut pieces: Vec<Piece> = near.iter().map(|n| Piece::whole(patches, *n)).collect();
         let mut asked = 0;
@@ -252,7 +258,7 @@ impl Search<'_> {
                 pieces.par_extend(some.par_iter().flat_map_iter(|piece| piece.divided(patches, |_| 0.0)));
             }
         }
-        Ok(())
+        Ok(asked)
     }
 }
 
@@ -299,4 +305,28 @@ fn least_of(piece: &Piece, patches: &Patches) -> f64 {
     let corner = piece.numbers.iter().copied().fold(f64::INFINITY, f64::min);
     let longest = piece.longest_side();
     (corner * corner - longest * longest / 3.0).max(0.0).sqrt() - piece.off(patches)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Solid;
+    use crate::distance::{compiled, surface_of};
+
+    /// Patches that are off by more than is asked for stay so, however small their parts are.
+    #[test]
+    fn what_is_off_is_not_divided_further() {
+        let plate = Solid::cuboid([30.0, 30.0, 5.0]) - Solid::cylinder(5.1, 10.0);
+        let solids = [Solid::cylinder(5.0, 20.0), plate];
+        let programs = solids.each_ref().map(|solid| compiled(solid).unwrap());
+        let surfaces = solids.each_ref().map(|solid| surface_of(solid).unwrap());
+        let [peg, plate] = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
+        for (from, to) in [(&peg, &plate), (&plate, &peg)] {
+            let mut search = Search::new(from, to);
+            let near = search.near(&Run::default()).unwrap();
+            let asked = search.divide(near, &Run::default()).unwrap();
+            assert!(asked < MOST / 16, "{asked} points");
+            assert!(search.least > 0.08, "{}", search.least);
+        }
+    }
 }

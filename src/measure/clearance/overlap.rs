@@ -92,14 +92,9 @@ fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<
                 }
             }
         }
-        blocks.clear();
-        for block in open {
-            let before = blocks.len();
-            blocks.extend(runs.parts(block));
-            if blocks.len() == before {
-                near.extend(runs.patches(block));
-            }
-        }
+        let patches;
+        (blocks, patches) = runs.opened(&open);
+        near.extend(patches);
     }
     Ok(Ok(near))
 }

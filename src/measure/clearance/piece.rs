@@ -85,7 +85,7 @@ impl Piece {
     /// A zone that holds it, and all that is no farther from it than this.
     ///
     /// ```text
-    ///     ____.-'''-.____      A patch bulges to one side of its triangle mostly: the zone is moved there
+    ///     ____.-'''-.____      A patch is off to one side of its triangle mostly: the zone is moved there
     ///     ---/-------\---      by half of that, and is as thick.
     ///     ''''       ''''
     /// ```

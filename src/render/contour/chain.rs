@@ -62,8 +62,8 @@ struct End {
     slope: DVec2,
 }
 
-/// How far an arc with these ends is from its chord. One whose tangents turn by θ: ½ c tan(θ/4).
-fn bulge([a, b]: [End; 2]) -> f64 {
+/// The sagitta of the arc with these ends: ½ c tan(θ/4) where its tangents turn by θ.
+fn sagitta([a, b]: [End; 2]) -> f64 {
     let turn = a.slope.perp_dot(b.slope).atan2(a.slope.dot(b.slope));
     0.5 * a.point.distance(b.point) * (0.25 * turn.abs()).tan()
 }
@@ -200,11 +200,11 @@ impl Chains<'_> {
         while let Some((a, b, depth)) = pending.pop() {
             let chord = [a.point, b.point];
             let is_short = depth >= DEEPEST || a.point.distance(b.point) <= 0.5 * self.tolerance;
-            let bulge = UNEVEN * bulge([a, b]);
+            let sagitta = UNEVEN * sagitta([a, b]);
             let is_on = |t: f64| self.is_on(leaf, chord, a.point.lerp(b.point, t), CHORD);
             // An S has its middle on the chord.
-            let is_straight =
-                is_short || bulge <= CHORD * self.tolerance && is_on(0.5) && (depth > 0 || is_on(0.25) && is_on(0.75));
+            let is_straight = is_short
+                || sagitta <= CHORD * self.tolerance && is_on(0.5) && (depth > 0 || is_on(0.25) && is_on(0.75));
             // What is curved has come nearer by now.
             let corner = if is_straight || depth >= SMOOTH { self.corner(leaf, [a, b]) } else { None };
             match corner {
@@ -214,11 +214,11 @@ impl Chains<'_> {
                     let parts = |count: u32| -> Option<Vec<DVec2>> {
                         let part = |k: u32| {
                             let from = a.point.lerp(b.point, f64::from(k) / f64::from(count));
-                            self.across(leaf, from, way, [bulge, a.point.distance(b.point)])
+                            self.across(leaf, from, way, [sagitta, a.point.distance(b.point)])
                         };
                         (1..count).map(part).collect()
                     };
-                    let count = (bulge / (CHORD * self.tolerance)).sqrt().ceil().clamp(2.0, PARTS) as u32;
+                    let count = (sagitta / (CHORD * self.tolerance)).sqrt().ceil().clamp(2.0, PARTS) as u32;
                     if let Some(between) = parts(count).or_else(|| parts(2)) {
                         let (mut to, deeper) = (b, depth + (between.len() as u32 + 1).ilog2());
                         for point in between.into_iter().rev() {
