@@ -177,6 +177,21 @@ impl Tally {
                 let crosses = [1e-12, 1e-10, 1e-8].iter().any(|d| inside(found - d * size) != inside(found + d * size));
                 // Where it goes inside for less than the shortest of pieces either answer will do.
                 let is_brief = from < far && inside(from - 1e-5 * size) == inside(from + 1e-5 * size);
+                // It does so at what was found, if the value is above 0 at its crest there: a blade
+                // is thinner than samples are apart.
+                let crest = || {
+                    let (mut low, mut high) = (found - 1e-8 * size, found + 1e-8 * size);
+                    for _ in 0..120 {
+                        let [a, b] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+                        if value(a) < value(b) { low = a } else { high = b }
+                    }
+                    value(0.5 * (low + high))
+                };
+                let is_brief = is_brief
+                    || found < f64::INFINITY
+                        && !inside(found - 1e-5 * size)
+                        && !inside(found + 1e-5 * size)
+                        && crest() > 0.0;
                 // In a face it is inside or outside by rounding.
                 let in_face =
                     from < far && (1..32).all(|i| value(from + f64::from(i) * 1e-4 * size).abs() <= 1e-14 * size);
