@@ -160,7 +160,7 @@ impl<'a> Detector<'a> {
         }
         let mut frames = vec![DMat3::IDENTITY];
         for axis in axes(&voters, &mut self.random) {
-            let frame = about(self.directions.settled(axis));
+            let frame = about(self.directions.settled(axis, f64::INFINITY));
             if frames[1..].iter().all(|f| f.z_axis.cross(frame.z_axis).length() > 1e-3) {
                 frames.push(frame);
             }

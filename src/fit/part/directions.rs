@@ -7,48 +7,54 @@ use super::samples::Kind;
 /// Frames at most.
 const FRAMES: usize = 3;
 
+/// Degrees within which a direction is an axis of coordinates, two are one, or square: what facets
+/// are off by rounding, and what samples may leave open at the most.
+const ROUNDING: [f64; 3] = [0.01, 0.02, 0.02];
+const OF_VOXELS: [f64; 3] = [0.8, 1.0, 1.0];
+const OF_SCANS: [f64; 3] = [1.0, 2.0, 1.0];
+
 /// Directions that were settled, from the first on.
 pub(super) struct Directions {
     all: Vec<(DVec3, f64)>,
-    /// Sines of the angles within which one is an axis of coordinates, two are one, or square.
-    snap: f64,
-    one: f64,
-    square: f64,
+    /// Sines of these angles.
+    least: [f64; 3],
+    most: [f64; 3],
 }
 
 impl Directions {
     pub(super) fn new(kind: Kind) -> Directions {
-        let degrees: [f64; 3] = match kind {
-            // What facets are off by rounding.
-            Kind::Cad => [0.01, 0.02, 0.02],
-            Kind::Voxels => [0.8, 1.0, 1.0],
-            Kind::Scan => [1.0, 2.0, 1.0],
+        let degrees = match kind {
+            Kind::Cad => ROUNDING,
+            Kind::Voxels => OF_VOXELS,
+            Kind::Scan => OF_SCANS,
         };
-        let [snap, one, square] = degrees.map(|angle| angle.to_radians().sin());
-        Directions { all: Vec::new(), snap, one, square }
+        let [least, most] = [ROUNDING, degrees].map(|degrees| degrees.map(|angle: f64| angle.to_radians().sin()));
+        Directions { all: Vec::new(), least, most }
     }
 
-    /// What a direction is meant to be, of the same sign.
-    pub(super) fn settled(&self, direction: DVec3) -> DVec3 {
+    /// What a direction is meant to be, of the same sign, that samples leave open by an angle of
+    /// this sine.
+    pub(super) fn settled(&self, direction: DVec3, open: f64) -> DVec3 {
+        let [snap, one, square] = std::array::from_fn(|i| open.clamp(self.least[i], self.most[i]));
         let near =
             |to: DVec3, sine: f64| (direction.cross(to).length() < sine).then(|| to * direction.dot(to).signum() + 0.0);
-        let axis = DVec3::AXES.into_iter().find_map(|axis| near(axis, self.snap));
-        if let Some(known) = axis.or_else(|| self.all.iter().find_map(|(known, _)| near(*known, self.one))) {
+        let axis = DVec3::AXES.into_iter().find_map(|axis| near(axis, snap));
+        if let Some(known) = axis.or_else(|| self.all.iter().find_map(|(known, _)| near(*known, one))) {
             return known;
         }
-        let mut square = direction;
+        let mut settled = direction;
         let mut fixed: Vec<DVec3> = Vec::new();
         for (known, _) in &self.all {
             // Of those that it is square to, only such count as are square to each other.
-            if direction.dot(*known).abs() < self.square && fixed.iter().all(|f| f.dot(*known).abs() < 1e-9) {
-                square -= square.dot(*known) * *known;
+            if direction.dot(*known).abs() < square && fixed.iter().all(|f| f.dot(*known).abs() < 1e-9) {
+                settled -= settled.dot(*known) * *known;
                 fixed.push(*known);
             }
             if fixed.len() == 2 {
                 break;
             }
         }
-        square.normalize() + 0.0
+        settled.normalize() + 0.0
     }
 
     /// Adds a settled direction with the share of the area that it is of.
@@ -65,12 +71,12 @@ impl Directions {
         left.sort_by(|a, b| b.1.total_cmp(&a.1));
         let mut frames: Vec<DMat3> = Vec::new();
         while let (Some(&(first, _)), true) = (left.first(), frames.len() < FRAMES) {
-            let across = left.iter().map(|d| d.0).find(|d| d.dot(first).abs() < self.square.max(1e-6));
+            let across = left.iter().map(|d| d.0).find(|d| d.dot(first).abs() < self.most[2].max(1e-6));
             let least = DVec3::AXES[first.abs().min_position()];
             let second = across.unwrap_or(least);
             let second = (second - second.dot(first) * first).normalize();
             let frame = tidy(first, second);
-            left.retain(|(d, _)| (0..3).all(|k| frame.col(k).cross(*d).length() > self.one.max(1e-6)));
+            left.retain(|(d, _)| (0..3).all(|k| frame.col(k).cross(*d).length() > self.most[1].max(1e-6)));
             frames.push(frame);
         }
         frames

@@ -16,10 +16,18 @@ const LEAST: f64 = 1e-5;
 /// Exponents of superellipsoids.
 const EXPONENTS: [f64; 2] = [0.02, 2.0];
 
+/// Whether a leaf may turn as well.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Axes {
+    /// As they were settled. What is of no region is turned all the same.
+    Kept,
+    Free,
+}
+
 impl Leaf {
     /// How many numbers [`moved`](Leaf::moved) takes.
-    pub(super) fn freedom(&self) -> usize {
-        match &self.shape {
+    pub(super) fn freedom(&self, axes: Axes) -> usize {
+        let kept = match &self.shape {
             Shape::HalfSpace => 1,
             Shape::Sphere(_) | Shape::Profile { .. } => 4,
             Shape::Cylinder(_) | Shape::Torus(_) => 5,
@@ -27,6 +35,22 @@ impl Leaf {
             Shape::RoundedRectangle { .. } => 7,
             Shape::Supersolid(_) => 9,
             Shape::Superellipsoid(_) => 11,
+        };
+        kept + if axes == Axes::Free { self.turns() } else { 0 }
+    }
+
+    /// About how many of its axes it may be turned besides.
+    fn turns(&self) -> usize {
+        match &self.shape {
+            Shape::Sphere(_) | Shape::Superellipsoid(_) | Shape::Supersolid(_) => 0,
+            Shape::Box(_) | Shape::RoundedRectangle { .. } | Shape::Profile { .. } => 3,
+            // About its own it is the same, or turned already.
+            Shape::HalfSpace
+            | Shape::Cylinder(_)
+            | Shape::Cone(_)
+            | Shape::Torus(_)
+            | Shape::Prism(_)
+            | Shape::Supershape { .. } => 2,
         }
     }
 
@@ -36,10 +60,20 @@ impl Leaf {
     }
 
     /// The leaf with ends, sides, radii and place changed, in its own axes; none if a size would
-    /// vanish.
+    /// vanish. Last come its turns, where it is free.
     ///
     /// Ends move each on its own, as one of them may be in the air, where no sample tells of it.
-    pub(super) fn moved(&self, x: &[f64]) -> Option<Leaf> {
+    pub(super) fn moved(&self, x: &[f64], axes: Axes) -> Option<Leaf> {
+        let moved = self.resized(x)?;
+        let turns = if axes == Axes::Free { &x[self.freedom(Axes::Kept)..][..self.turns()] } else { &[] };
+        let mut turn = DVec3::ZERO;
+        for (axis, by) in turns.iter().enumerate() {
+            turn[axis] = *by;
+        }
+        Some(moved.turned_about(turn))
+    }
+
+    fn resized(&self, x: &[f64]) -> Option<Leaf> {
         let by = |d: DVec3, shape: Shape| Leaf { shape, centre: self.centre + self.rotation * d, ..*self };
         let whole = |i: usize| DVec3::new(x[i], x[i + 1], x[i + 2]);
         let ends = |i: usize| (0.5 * (x[i] + x[i + 1]), x[i + 1] - x[i]);

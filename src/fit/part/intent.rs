@@ -7,7 +7,8 @@
 //!     box: turned by .0001                      not turned
 //! ```
 //!
-//! What is not round, but equal to another number, becomes that one. Vertices judge: a number is
+//! Axes were settled when leaves were found; what vertices tell to be turned farther than they leave
+//! open is turned back. What is not round, but equal to another number, becomes that one. Vertices judge: a number is
 //! moved by no more than they leave open. A cut that ends where there is nothing left to cut is
 //! lengthened to a round number, as an end in a face would leave a skin there, or not, by the last
 //! digit.
@@ -24,7 +25,7 @@ use crate::{Cancelled, Run};
 const TURNED: f64 = 2e-3;
 
 /// Turns by less, in radians, are rounding.
-const LEAST_TURN: f64 = 1e-9;
+const LEAST_TURN: f64 = 1e-6;
 
 /// What vertices leave open of a length at the least, in diagonals, and what is of a leaf's
 /// surface.
@@ -74,6 +75,31 @@ impl Meant {
     }
 }
 
+/// A leaf as it is turned if its axes are not settled.
+#[derive(Clone, Debug)]
+pub(super) struct Free {
+    pub(super) leaf: Leaf,
+    /// Whether vertices tell that, and not samples alone.
+    pub(super) is_told: bool,
+}
+
+impl Free {
+    /// What was settled of its axes: a turn of so many radians that is taken back by the motion.
+    fn settled(&self, leaf: &Leaf) -> (f64, DAffine3) {
+        let back = tilt(&self.leaf, leaf);
+        let off = back.matrix3 - DMat3::IDENTITY;
+        ((0.5 * off.to_cols_array().iter().map(|x| x * x).sum::<f64>()).sqrt(), back)
+    }
+
+    /// What is told of the axes of a leaf, which is the nth.
+    pub(super) fn turn(&self, nth: usize, leaf: &Leaf) -> Option<Change> {
+        let (angle, back) = self.settled(leaf);
+        let of = Changed::Turn(back);
+        let change = Change { leaf: nth, of, measure: Measure::Turn, from: angle.to_degrees(), to: 0.0 };
+        (angle > LEAST_TURN).then_some(change)
+    }
+}
+
 /// Leaves with whether each adds, in their order.
 type Leaves = Vec<(bool, Leaf)>;
 
@@ -81,15 +107,22 @@ type Leaves = Vec<(bool, Leaf)>;
 /// such a diagonal.
 pub(super) fn intended(
     leaves: &[(bool, Leaf)],
+    free: &[Free],
     vertices: &[DVec3],
     size: f64,
     run: &Run,
 ) -> Result<(Leaves, Vec<Change>), Cancelled> {
-    let open: Vec<f64> = leaves.iter().map(|(_, leaf)| open(leaf, vertices, size)).collect();
-    // By what a turn moves the ends: that is left open as well.
-    let turned = |leaf: &Leaf, open: f64| (open / leaf.reach().length()).min(TURNED);
-    let mut meant: Leaves =
-        leaves.iter().zip(&open).map(|((adds, leaf), open)| (*adds, leaf.aligned(turned(leaf, *open)))).collect();
+    let open: Vec<f64> = (leaves.iter().zip(free))
+        .map(|((_, leaf), free)| open(if free.is_told { &free.leaf } else { leaf }, vertices, size))
+        .collect();
+    let meant = |(((adds, leaf), free), open): ((&(bool, Leaf), &Free), &f64)| {
+        // By what a turn moves the ends: that is left open as well. Half-spaces reach all over.
+        let reach = if leaf.reach() == DVec3::ZERO { 0.5 * size } else { leaf.reach().length() };
+        let within = (open / reach).min(TURNED);
+        let is_turned = free.is_told && free.settled(leaf).0 > within;
+        (*adds, if is_turned { &free.leaf } else { leaf }.aligned(within))
+    };
+    let mut meant: Leaves = leaves.iter().zip(free).zip(&open).map(meant).collect();
     // How far each number may be moved, by leaves.
     let within: Vec<Vec<f64>> = (meant.iter().zip(&open))
         .map(|((_, leaf), open)| leaf.leverages().into_iter().map(|by| by * open).collect())
@@ -119,14 +152,8 @@ pub(super) fn intended(
     }
     make_equal(&mut numbers, loose);
     let mut all = Vec::new();
-    for (i, (((_, leaf), numbers), (_, found))) in meant.iter_mut().zip(&numbers).zip(leaves).enumerate() {
-        let back = tilt(found, leaf);
-        let off = back.matrix3 - DMat3::IDENTITY;
-        let angle = (0.5 * off.to_cols_array().iter().map(|x| x * x).sum::<f64>()).sqrt();
-        if angle > LEAST_TURN {
-            let of = Changed::Turn(back);
-            all.push(Change { leaf: i, of, measure: Measure::Turn, from: angle.to_degrees(), to: 0.0 });
-        }
+    for (i, (((_, leaf), numbers), free)) in meant.iter_mut().zip(&numbers).zip(free).enumerate() {
+        all.extend(free.turn(i, leaf));
         let Some(made) = leaf.made_of(numbers) else { continue };
         all.extend(changes(i, leaf, numbers));
         *leaf = made;
@@ -189,6 +216,12 @@ fn open(leaf: &Leaf, vertices: &[DVec3], size: f64) -> f64 {
 mod tests {
     use super::*;
 
+    /// What leaves are meant to be of which no vertex tells anything.
+    fn of(leaves: &[(bool, Leaf)]) -> (Leaves, Vec<Change>) {
+        let free: Vec<Free> = leaves.iter().map(|(_, leaf)| Free { leaf: leaf.clone(), is_told: false }).collect();
+        intended(leaves, &free, &[], 70.0, &Run::default()).unwrap()
+    }
+
     /// A plate of 60 × 40 × 8 with a hole that ends in its top, a little off round numbers.
     #[test]
     fn numbers_are_round_and_holes_go_through() {
@@ -196,8 +229,7 @@ mod tests {
             Leaf::cuboid(DMat3::IDENTITY, [DVec3::new(-30.0003, -20.0, 0.0), DVec3::new(30.0, 19.9998, 8.0001)]);
         let hole = Leaf::cylinder(-DVec3::Z, DVec3::new(10.0002, 5.0, 0.0), 3.4999, [-8.0, 1.8]);
         let pocket = Leaf::cylinder(DVec3::X, DVec3::new(-30.0, 0.0, 4.0), 2.0, [-3.0, 12.0001]);
-        let (meant, changes) =
-            intended(&[(true, plate), (false, hole), (false, pocket)], &[], 70.0, &Run::default()).unwrap();
+        let (meant, changes) = of(&[(true, plate), (false, hole), (false, pocket)]);
         let numbers = |i: usize| meant[i].1.measures().into_iter().map(|(_, v)| v).collect::<Vec<_>>();
         assert_eq!(numbers(0), [-30.0, 30.0, -20.0, 20.0, 0.0, 8.0]);
         let hole = numbers(1);
@@ -207,14 +239,14 @@ mod tests {
         // Hardly turned is not turned, which is told and can be taken back.
         let turn = DMat3::from_rotation_z(1e-5);
         let block = Leaf::cuboid(turn, [DVec3::new(-30.0, 4.0, 0.0), DVec3::new(30.0, 9.0, 8.0)]);
-        let (upright, told) = intended(&[(true, block)], &[], 70.0, &Run::default()).unwrap();
+        let (upright, told) = of(&[(true, block)]);
         let change = told.iter().find(|change| change.measure == Measure::Turn).expect("it was turned");
         let Changed::Turn(back) = change.of else { panic!("{change:?}") };
         assert!(upright[0].1.rotation == DMat3::IDENTITY && (change.from.to_radians() - 1e-5).abs() < 1e-9);
         assert!((upright[0].1.turned_by(&back).rotation - turn).to_cols_array().iter().all(|off| off.abs() < 1e-9));
         // Numbers that are not round are equal at least, and short.
         let pins = [12.34567, -12.34571].map(|x| (true, Leaf::sphere(DVec3::new(x, 0.0, 0.0), 1.0)));
-        let [a, b] = [0, 1].map(|i| intended(&pins, &[], 70.0, &Run::default()).unwrap().0[i].1.centre.x);
+        let [a, b] = [0, 1].map(|i| of(&pins).0[i].1.centre.x);
         assert!(a == -b && a.to_string().len() <= 8, "{a}");
         // The pocket ends in the plate on one side only.
         let pocket = numbers(2);

@@ -278,16 +278,17 @@ impl Leaf {
     }
 }
 
-/// What turns a leaf that was aligned back to where it was, about its centre.
-pub(super) fn tilt(leaf: &Leaf, aligned: &Leaf) -> DAffine3 {
-    let turn = if aligned.rotation == leaf.rotation {
+/// What turns a leaf whose axes were settled back to where it was, about its centre.
+pub(super) fn tilt(leaf: &Leaf, settled: &Leaf) -> DAffine3 {
+    let turn = if settled.rotation == leaf.rotation {
         DMat3::IDENTITY
     } else if leaf.is_round() {
-        let [from, to] = [aligned, leaf].map(|leaf| leaf.rotation.z_axis);
+        let [from, to] = [settled, leaf].map(|leaf| leaf.rotation.z_axis);
         DMat3::from_quat(DQuat::from_rotation_arc(from.dot(to).signum() * from, to))
     } else {
         // A box may have other names for its axes.
-        leaf.rotation * DMat3::from_cols_array(&leaf.rotation.to_cols_array().map(f64::round)).transpose()
+        let names = (leaf.rotation.transpose() * settled.rotation).to_cols_array().map(f64::round);
+        leaf.rotation * DMat3::from_cols_array(&names) * settled.rotation.transpose()
     };
     DAffine3 { matrix3: turn, translation: leaf.centre - turn * leaf.centre }
 }

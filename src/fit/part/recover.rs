@@ -1,7 +1,5 @@
 //! From a mesh to a tree of leaves.
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -23,7 +21,7 @@ use super::result::PartFit;
 use super::samples::{Kind, Samples};
 use super::select::Selector;
 use super::settings::PartSettings;
-use super::snapping::{Snapped, exact, opened, steps};
+use super::snapping::{Snapped, exact, opened, steps, unsettled};
 use super::times::{Clock, PartTimes};
 use super::topology::{Topologies, mended};
 use super::{profiles, residual, superellipsoids};
@@ -166,7 +164,7 @@ fn recovered(
             opened(&mut selector, model, SKIN.max(3.0 * samples.noise), &samples, &to_select)?
         }
         true => exact(&mut selector, model, vertices, &samples, &mut topologies, &to_select)?,
-        false => Snapped { model, meant: BTreeMap::new() },
+        false => unsettled(&mut selector, model, vertices, &samples, &to_select)?,
     };
     let Snapped { model, mut meant } = snapped;
     times.snapping = clock.lap();

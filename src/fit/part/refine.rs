@@ -9,7 +9,7 @@
 
 use glam::DVec3;
 
-use super::freedom::MOST;
+use super::freedom::{Axes, MOST};
 use super::leaf::Leaf;
 use super::samples::{Kind, Samples};
 use crate::fit::linear::solved;
@@ -55,38 +55,70 @@ pub(super) fn refined(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> 
         run.check()?;
         let least = WIDTHS[1].max(1.5 * samples.noise);
         let width = (WIDTHS[0] * 0.5_f64.powi(round)).max(least);
-        let mut own: Vec<Vec<usize>> = vec![Vec::new(); leaves.len()];
-        for (i, p) in samples.points.iter().enumerate() {
-            if let (Some(leaf), value) = owner(&leaves, *p)
-                && value.abs() < 3.0 * width
-            {
-                own[leaf].push(i);
-            }
-        }
-        for ((adds, leaf), own) in leaves.iter_mut().zip(own) {
+        // Corners of a mesh have told the others, which samples of facets are inside of.
+        let is_told = |leaf: &Leaf| samples.kind == Kind::Cad && !leaf.is_free();
+        let own = owned(&leaves, samples, 3.0 * width, |leaf| !is_told(leaf));
+        for ((_, leaf), own) in leaves.iter_mut().zip(own) {
             run.check()?;
-            if samples.kind == Kind::Cad && !leaf.is_free() {
-                // Corners have told it, which samples of facets are inside of.
-                continue;
-            }
-            let sign = if *adds { 1.0 } else { -1.0 };
-            let agrees = |i: &usize| sign * leaf.gradient(samples.points[*i]).dot(samples.normals[*i]) > AGREE;
-            let agreeing = own.into_iter().filter(agrees);
-            let agreeing: Vec<_> = agreeing.map(|i| (samples.points[i], samples.weights[i])).collect();
-            if agreeing.len() >= 2 * leaf.freedom() {
-                // What was found by its own region is nearly there, and would be drawn off by what
-                // is beside it.
-                let width = if leaf.is_free() { width } else { width.min(NARROW.max(least)) };
-                *leaf = fitted(leaf, &agreeing, width, |leaf, p| leaf.distance(p));
+            // What was found by its own region is nearly there, and would be drawn off by what is
+            // beside it.
+            let width = if leaf.is_free() { width } else { width.min(NARROW.max(least)) };
+            if !is_told(leaf) && own.len() >= 2 * leaf.freedom(Axes::Kept) {
+                *leaf = fitted(leaf, Axes::Kept, &own, width, |leaf, p| leaf.distance(p));
             }
         }
     }
     Ok(leaves)
 }
 
+/// By leaf, of those that are asked for, the samples that it makes the surface at, to within a
+/// distance, and that face as it does, with their weights.
+fn owned(
+    leaves: &[(bool, Leaf)],
+    samples: &Samples,
+    near: f64,
+    is_asked: impl Fn(&Leaf) -> bool,
+) -> Vec<Vec<(DVec3, f64)>> {
+    let mut own = vec![Vec::new(); leaves.len()];
+    for ((p, normal), weight) in samples.points.iter().zip(&samples.normals).zip(&samples.weights) {
+        if let (Some(i), value) = owner(leaves, *p)
+            && value.abs() < near
+            && is_asked(&leaves[i].1)
+        {
+            let (adds, leaf) = &leaves[i];
+            let sign = if *adds { 1.0 } else { -1.0 };
+            if sign * leaf.gradient(*p).dot(*normal) > AGREE {
+                own[i].push((*p, *weight));
+            }
+        }
+    }
+    own
+}
+
+/// The leaves, turned as their samples tell; where these are too few, as they were.
+pub(super) fn turned(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> Result<Vec<Leaf>, Cancelled> {
+    let width = WIDTHS[1].max(1.5 * samples.noise);
+    let turned = |((_, leaf), own): (&(bool, Leaf), Vec<(DVec3, f64)>)| {
+        run.check()?;
+        if own.len() < 2 * leaf.freedom(Axes::Free) {
+            return Ok(leaf.clone());
+        }
+        let free = fitted(leaf, Axes::Free, &own, width, |leaf, p| leaf.distance(p));
+        Ok(Leaf { rotation: free.rotation, ..leaf.clone() })
+    };
+    // What a settled axis is off may be more than noise.
+    leaves.iter().zip(owned(leaves, samples, WIDTHS[0].max(3.0 * width), |_| true)).map(turned).collect()
+}
+
 /// A leaf fitted to what is weighted, of which each is to be at no distance from it.
-pub(super) fn fitted<T: Copy>(leaf: &Leaf, own: &[(T, f64)], width: f64, distance: impl Fn(&Leaf, T) -> f64) -> Leaf {
-    let count = leaf.freedom();
+pub(super) fn fitted<T: Copy>(
+    leaf: &Leaf,
+    axes: Axes,
+    own: &[(T, f64)],
+    width: f64,
+    distance: impl Fn(&Leaf, T) -> f64,
+) -> Leaf {
+    let count = leaf.freedom(axes);
     let mut leaf = leaf.clone();
     let cost = |leaf: &Leaf| -> f64 {
         let of = |(p, weight): &(T, f64)| {
@@ -102,7 +134,7 @@ pub(super) fn fitted<T: Copy>(leaf: &Leaf, own: &[(T, f64)], width: f64, distanc
             .map(|k| {
                 let mut x = [0.0; MOST];
                 x[k] = STEP;
-                leaf.moved(&x)
+                leaf.moved(&x, axes)
             })
             .collect();
         let (mut hessian, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
@@ -129,7 +161,7 @@ pub(super) fn fitted<T: Copy>(leaf: &Leaf, own: &[(T, f64)], width: f64, distanc
             hessian[a][a] *= 1.0 + damping;
         }
         let Some(step) = solved(&hessian, &right, &free) else { break };
-        let Some(next) = leaf.moved(&step.map(|x| x.clamp(-0.05, 0.05))) else { break };
+        let Some(next) = leaf.moved(&step.map(|x| x.clamp(-0.05, 0.05)), axes) else { break };
         let after = cost(&next);
         if after < before {
             let gain = before - after;

@@ -77,7 +77,7 @@ pub struct Snap {
     /// Which of the [leaves](PartFit::leaves).
     pub leaf: usize,
     /// What the number is: "diameter", "radius" or "size"; "x", "y" or "z": where the leaf is, or
-    /// ends, along its own axes; or "turn": the angle by which it was off the part's axes.
+    /// ends, along its own axes; or "turn": the angle by which it was off the axes that it was settled along.
     pub measure: &'static str,
     /// What was found, in length units; of a turn in degrees.
     pub found: f64,
@@ -98,11 +98,12 @@ impl PartFit {
     /// The numbers that were changed: to round ones, in millimetres or in binary fractions of an
     /// inch, whichever makes more of the part's numbers short, by no more than the vertices leave
     /// open; cuts that ended in the open, or in the face that they go through, or of a part from
-    /// points but for a skin, which were lengthened; and leaves that were a little off the part's
-    /// axes, which were turned to them. Numbers are not changed, and leaves that they leave nothing
-    /// to do for not left out, where that would take genus or shells farther from the input's, as
-    /// far as these are known: of points, or an open mesh, they are not, and what is smaller than
-    /// a 128th of the part's longest side may be missed.
+    /// points but for a skin, which were lengthened; and axes, of leaves that were a little off the
+    /// part's axes, each other's, or square to these, by less than vertices or samples leave open.
+    /// Numbers are not changed, and leaves that they leave nothing to do for not left out, where
+    /// that would take genus or shells farther from the input's, as far as these are known: of
+    /// points, or an open mesh, they are not, and what is smaller than a 128th of the part's longest
+    /// side may be missed.
     #[must_use]
     pub fn snaps(&self) -> &[Snap] {
         &self.snaps

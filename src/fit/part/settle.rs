@@ -121,13 +121,19 @@ pub(super) fn settle(
     let mut turned: Option<Columns> = None;
     match &mut shape {
         Shape::Plane { normal, offset } => {
-            *normal = directions.settled(*normal);
-            let off = points.iter().map(|i| normal.dot(samples.points[*i as usize]) * samples.weights[*i as usize]);
+            let middle: DVec3 = points.iter().map(|i| samples.points[*i as usize] * samples.weights[*i as usize]).sum();
             let sum: f64 = points.iter().map(|i| samples.weights[*i as usize]).sum();
+            let (values, _) = eigen(moments(points.iter().map(|i| {
+                let i = *i as usize;
+                (samples.points[i] - middle / sum.max(f64::MIN_POSITIVE), samples.weights[i])
+            })));
+            *normal = directions.settled(*normal, open(values));
+            let off = points.iter().map(|i| normal.dot(samples.points[*i as usize]) * samples.weights[*i as usize]);
             *offset = off.sum::<f64>() / sum.max(f64::MIN_POSITIVE);
         }
         Shape::Cone { centre, radius, slope, .. } => {
-            let axis = directions.settled(polished(samples, &points, frame.z_axis, *slope != 0.0));
+            let (axis, open) = polished(samples, &points, frame.z_axis, *slope != 0.0);
+            let axis = directions.settled(axis, open);
             if axis.cross(frame.z_axis).length() > 1e-7 {
                 let heights = points.iter().map(|i| frame.z_axis.dot(samples.points[*i as usize])).sum::<f64>();
                 let middle = heights / points.len().max(1) as f64;
@@ -157,8 +163,15 @@ pub(super) fn settle(
     settled.judge(samples, taken, limits).then_some(settled)
 }
 
-/// The axis that normals of a cylinder are across, or of a cone as far from as each other.
-fn polished(samples: &Samples, points: &[u32], axis: DVec3, is_cone: bool) -> DVec3 {
+/// How far a direction may be off, as a sine, along which points of a plane, or normals of a
+/// cylinder, vary least: three deviations of them, over how they vary across.
+fn open(values: [f64; 3]) -> f64 {
+    3.0 * (values[0].max(0.0) / values[1].max(f64::MIN_POSITIVE)).sqrt()
+}
+
+/// The axis that normals of a cylinder are across, or of a cone as far from as each other, and how
+/// far it may be off, as a sine.
+fn polished(samples: &Samples, points: &[u32], axis: DVec3, is_cone: bool) -> (DVec3, f64) {
     let weight = |i: &u32| samples.weights[*i as usize];
     let sum: f64 = points.iter().map(weight).sum();
     let mean: DVec3 = points.iter().map(|i| samples.normals[*i as usize] * weight(i)).sum::<DVec3>() / sum;
@@ -166,7 +179,7 @@ fn polished(samples: &Samples, points: &[u32], axis: DVec3, is_cone: bool) -> DV
     let (values, axes) = eigen(moments(points.iter().map(|i| (samples.normals[*i as usize] - about, weight(i)))));
     let found = axes.x_axis * axes.x_axis.dot(axis).signum();
     let is_told = values[1] > VARYING * sum && found.cross(axis).length() < TURN;
-    if is_told { found } else { axis }
+    if is_told { (found, open(values)) } else { (axis, f64::INFINITY) }
 }
 
 impl Settled {

@@ -8,6 +8,7 @@
 
 use glam::DVec3;
 
+use super::freedom::Axes;
 use super::leaf::Leaf;
 use super::refine::{fitted, owner};
 use crate::{Cancelled, Run};
@@ -23,8 +24,36 @@ const MEANT: f64 = 3e-3;
 const MET: f64 = 2e-5;
 
 /// The leaves laid through the vertices that they make the surface at, where most of these are met
-/// then.
+/// then; their axes stay.
 pub(super) fn snapped(leaves: &[(bool, Leaf)], vertices: &[DVec3], run: &Run) -> Result<Vec<(bool, Leaf)>, Cancelled> {
+    let mut laid = through(leaves, Axes::Kept, vertices, run)?;
+    let was_met = met(leaves, vertices);
+    let is_met = met(&laid, vertices);
+    for (i, leaf) in laid.iter_mut().enumerate() {
+        let [meant, now] = is_met[i];
+        let is_better = 2 * now > meant && now > was_met[i][1];
+        if !is_better || leaf.1.centre.distance(leaves[i].1.centre) > FARTHEST {
+            *leaf = leaves[i].clone();
+        }
+    }
+    Ok(laid)
+}
+
+/// The leaves that were laid through the vertices, turned as well, where most vertices are met, and
+/// not fewer for it; none where vertices do not tell.
+pub(super) fn turned(laid: &[(bool, Leaf)], vertices: &[DVec3], run: &Run) -> Result<Vec<Option<Leaf>>, Cancelled> {
+    let free = through(laid, Axes::Free, vertices, run)?;
+    let was_met = met(laid, vertices);
+    let is_met = met(&free, vertices);
+    let told = |(i, (_, leaf)): (usize, (bool, Leaf))| {
+        let [meant, now] = is_met[i];
+        let is_told = 2 * now > meant && now >= was_met[i][1];
+        (is_told && leaf.centre.distance(laid[i].1.centre) <= FARTHEST).then_some(leaf)
+    };
+    Ok(free.into_iter().enumerate().map(told).collect())
+}
+
+fn through(leaves: &[(bool, Leaf)], axes: Axes, vertices: &[DVec3], run: &Run) -> Result<Vec<(bool, Leaf)>, Cancelled> {
     let mut laid = leaves.to_vec();
     for width in WIDTHS {
         run.check()?;
@@ -33,20 +62,12 @@ pub(super) fn snapped(leaves: &[(bool, Leaf)], vertices: &[DVec3], run: &Run) ->
         for (_, leaf) in &mut laid {
             run.check()?;
             let own: Vec<_> = on_faces(leaf, &of_surface, near).map(|on| (on, 1.0)).collect();
-            if own.len() > 1 {
+            // Of all that is free, so many tell too little.
+            if own.len() > if axes == Axes::Free { leaf.freedom(axes) } else { 1 } {
                 // Vertices at a rim are on both faces: by the distance alone they would be met by
                 // all that is wider, too.
-                *leaf = fitted(leaf, &own, width, |leaf, (p, face): (DVec3, usize)| leaf.faces(p)[face]);
+                *leaf = fitted(leaf, axes, &own, width, |leaf, (p, face): (DVec3, usize)| leaf.faces(p)[face]);
             }
-        }
-    }
-    let was_met = met(leaves, vertices);
-    let is_met = met(&laid, vertices);
-    for (i, leaf) in laid.iter_mut().enumerate() {
-        let [meant, now] = is_met[i];
-        let is_better = 2 * now > meant && now > was_met[i][1];
-        if !is_better || leaf.1.centre.distance(leaves[i].1.centre) > FARTHEST {
-            *leaf = leaves[i].clone();
         }
     }
     Ok(laid)

@@ -1,7 +1,7 @@
 //! A model with the lengths that it is meant to have, as far as it stays what it is.
 //!
 //! ```text
-//!     found  →  laid through the vertices  →  round numbers, cuts that go through
+//!     found  →  laid through the vertices  →  axes, round numbers, cuts that go through
 //!                                                    │
 //!               leaves that do nothing left out  ←───┘
 //!                      │
@@ -13,12 +13,13 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::super::error::FitError;
-use super::intent::{Change, Meant, changes, intended};
+use super::intent::{Change, Free, Meant, changes, intended};
 use super::leaf::Leaf;
 use super::model::{Model, Step};
+use super::refine;
 use super::samples::Samples;
 use super::select::Selector;
-use super::snap::snapped;
+use super::snap;
 use super::through::lengthened;
 use super::topology::Topologies;
 use crate::{Cancelled, Run};
@@ -45,10 +46,11 @@ pub(super) fn exact(
     run: &Run,
 ) -> Result<Snapped, FitError> {
     let Samples { centre, size, .. } = *samples;
-    let laid = snapped(&selector.leaves(&found.steps), vertices, run)?;
+    let laid = snap::snapped(&selector.leaves(&found.steps), vertices, run)?;
+    let free = free(&laid, vertices, samples, run)?;
     let outward: Vec<(bool, Leaf)> = laid.iter().map(|(adds, leaf)| (*adds, leaf.outward(centre, size))).collect();
     let vertices: Vec<DVec3> = vertices.iter().map(|p| centre + size * *p).collect();
-    let (outward, changes) = intended(&outward, &vertices, size, run)?;
+    let (outward, changes) = intended(&outward, &free, &vertices, size, run)?;
     let inward = outward.iter().map(|(adds, leaf)| (*adds, leaf.inward(centre, size))).collect();
     let steps = steps(selector, &found, inward);
     let mut meant = BTreeMap::new();
@@ -59,6 +61,42 @@ pub(super) fn exact(
     let exact = selector.model(steps);
     let model = harmless(selector, &found, exact, |model| topologies.off(selector, model))?;
     Ok(Snapped { model, meant })
+}
+
+/// Leaves as they are turned by what tells it best, in length units.
+fn free(leaves: &[(bool, Leaf)], vertices: &[DVec3], samples: &Samples, run: &Run) -> Result<Vec<Free>, Cancelled> {
+    let Samples { centre, size, .. } = *samples;
+    let told = snap::turned(leaves, vertices, run)?;
+    let sampled = refine::turned(leaves, samples, run)?;
+    let free = |(told, sampled): (Option<Leaf>, Leaf)| Free {
+        is_told: told.is_some(),
+        leaf: told.unwrap_or(sampled).outward(centre, size),
+    };
+    Ok(told.into_iter().zip(sampled).map(free).collect())
+}
+
+/// The model with axes as nothing but vertices and samples tell them, where that is not for the
+/// worse.
+pub(super) fn unsettled(
+    selector: &mut Selector<'_>,
+    mut model: Model,
+    vertices: &[DVec3],
+    samples: &Samples,
+    run: &Run,
+) -> Result<Snapped, Cancelled> {
+    let leaves = selector.leaves(&model.steps);
+    for (i, free) in free(&leaves, vertices, samples, run)?.into_iter().enumerate() {
+        run.check()?;
+        let turned = Leaf { rotation: free.leaf.rotation, ..leaves[i].1.clone() };
+        let mut steps = model.steps.clone();
+        let may = selector.pool.candidates[steps[i].which as usize].may;
+        steps[i].which = selector.pool.add(turned, selector.queries, may, None);
+        let next = selector.model(steps);
+        if next.cost < model.cost + IDLE {
+            model = next;
+        }
+    }
+    Ok(Snapped { model, meant: BTreeMap::new() })
 }
 
 /// What of a model with exact lengths may stay beside the one that was found. `off` tells how far
@@ -123,7 +161,8 @@ pub(super) fn steps(selector: &mut Selector<'_>, model: &Model, leaves: Vec<(boo
     steps
 }
 
-/// The model with cuts that go through but for a skin, where that is not for the worse.
+/// The model with cuts that go through but for a skin, where that is not for the worse, and what
+/// was settled of its axes.
 pub(super) fn opened(
     selector: &mut Selector<'_>,
     mut model: Model,
@@ -132,7 +171,15 @@ pub(super) fn opened(
     run: &Run,
 ) -> Result<Snapped, Cancelled> {
     let Samples { centre, size, .. } = *samples;
+    let leaves = selector.leaves(&model.steps);
+    let free = free(&leaves, &[], samples, run)?;
     let mut meant = BTreeMap::new();
+    for (i, (step, ((_, leaf), free))) in model.steps.iter().zip(leaves.iter().zip(&free)).enumerate() {
+        let leaf = leaf.outward(centre, size);
+        if let Some(turn) = free.turn(i, &leaf) {
+            meant.insert(step.which, Meant { changes: vec![turn], leaf });
+        }
+    }
     for i in 0..model.steps.len() {
         run.check()?;
         let leaves = selector.leaves(&model.steps);
@@ -148,8 +195,9 @@ pub(super) fn opened(
                 let numbers: Vec<f64> = leaf.measures().into_iter().map(|(_, v)| v).collect();
                 // The other end is the same but for the last digits.
                 let is_moved = |change: &Change| (change.to - change.from).abs() > GRAIN * size;
-                let own = changes(i, &old, &numbers).into_iter().filter(is_moved).collect();
-                meant.insert(which, Meant { changes: own, leaf });
+                let ends = changes(i, &old, &numbers).into_iter().filter(is_moved);
+                let changes = free[i].turn(i, &leaf).into_iter().chain(ends).collect();
+                meant.insert(which, Meant { changes, leaf });
                 model = next;
             }
         }

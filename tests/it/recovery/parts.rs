@@ -64,6 +64,30 @@ fn a_counterbored_plate_turned_anyhow() {
     assert_eq!(fit.leaves().iter().filter(|leaf| leaf.is_cut() && leaf.kind() == "cylinder").count(), 4);
 }
 
+/// Less than directions are settled by while planes and cylinders are looked for.
+#[test]
+fn axes_are_as_vertices_tell_them() {
+    let plate = Solid::cuboid([60.0, 40.0, 8.0]) - Solid::cylinder(6.0, 20.0).translate([12.0, 4.0, 0.0]);
+    let about = DVec3::new(2.0, -1.0, 1.0).normalize();
+    let turned = |degrees: f64| plate.rotate_about(about, rvachev::deg(degrees));
+    // Of small facets, and of large ones.
+    for (degrees, cell) in [(0.3, CellSize::LongestSide(96)), (0.006, CellSize::Tolerance(0.02))] {
+        let mesh = turned(degrees).mesh(&MeshSettings { cell, ..MeshSettings::default() }).unwrap();
+        let settings = PartSettings { snap: false, ..PartSettings::default() };
+        let [fit, free] = [PartSettings::default(), settings].map(|settings| part(&mesh, &settings).unwrap());
+        assert_eq!(names(&fit), ["box 1", "cut cylinder 1"]);
+        assert!(fit.snaps().iter().all(|snap| snap.measure != "turn"), "{degrees}: {:?}", fit.snaps());
+        for fit in [fit, free] {
+            let corner = turned(degrees).contains([29.99, 19.99, 3.99]).unwrap();
+            assert!(corner == fit.solid().contains([29.99, 19.99, 3.99]).unwrap(), "{degrees}");
+            let off =
+                mesh.positions().iter().map(|p| fit.solid().closest_surface_point(p.as_dvec3()).unwrap().unwrap());
+            let off = off.zip(mesh.positions()).map(|(q, p)| q.distance(p.as_dvec3())).fold(0.0, f64::max);
+            assert!(off < 0.02, "{degrees}: {off}, {:?}", fit.snaps());
+        }
+    }
+}
+
 /// A cylinder as programs write it: of so many facets, with its corners on the circle.
 fn faceted(radius: f32, height: f32, facets: u32) -> Mesh {
     let corner = |i: u32, z: f32| {

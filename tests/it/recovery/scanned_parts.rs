@@ -148,6 +148,20 @@ fn a_scanned_bracket_is_three_leaves() {
 }
 
 #[test]
+fn axes_of_a_scan_are_settled_unless_it_is_refused() {
+    let truth = bracket().rotate_about(DVec3::new(2.0, -1.0, 1.0).normalize(), rvachev::deg(0.6));
+    let (points, normals) = scanned(&meshed(&truth), 4000, 0.06, |_| true);
+    let cloud = PointCloud::new(points).unwrap().with_normals(normals).unwrap();
+    let fit = part_of_points(&cloud, &PartSettings::default()).unwrap();
+    let turns: Vec<usize> = (0..fit.snaps().len()).filter(|n| fit.snaps()[*n].measure == "turn").collect();
+    assert!(turns.iter().any(|n| (fit.snaps()[*n].found - 0.55).abs() < 0.1), "{:?}", fit.snaps());
+    let refused = fit.without_snaps(&turns);
+    let free = part_of_points(&cloud, &PartSettings { snap: false, ..PartSettings::default() }).unwrap();
+    let [settled, refused, free] = [&fit, &refused, &free].map(|fit| iou(fit, &truth));
+    assert!(refused > settled + 0.001 && free > settled + 0.001, "{settled} {refused} {free}");
+}
+
+#[test]
 fn a_bracket_on_a_table_is_whole_and_its_underside_not_seen() {
     let truth = bracket();
     let mesh = meshed(&truth);
