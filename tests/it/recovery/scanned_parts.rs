@@ -181,9 +181,9 @@ type Row = (&'static str, f64, bool, bool, usize, f64);
 
 const ORIENTED: [Row; 4] = [
     ("none", 0.0, true, true, 45, 0.98),
-    ("0.2 %", 0.002, true, true, 44, 0.98),
-    ("0.4 %", 0.004, true, true, 40, 0.98),
-    ("none, from above", 0.0, true, false, 38, 0.97),
+    ("0.2 %", 0.002, true, true, 48, 0.98),
+    ("0.4 %", 0.004, true, true, 45, 0.98),
+    ("none, from above", 0.0, true, false, 43, 0.97),
 ];
 
 const BARE: [Row; 2] =
