@@ -210,8 +210,8 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 /// | 0.2 % | 50 | 0.993 |
 /// | 0.4 % | 49 | 0.991 |
 /// | none, from above | 46 | 0.991 |
-/// | none, without normals | 49 | 0.992 |
-/// | 0.2 %, without normals | 47 | 0.989 |
+/// | none, without normals | 49 | 0.991 |
+/// | 0.2 %, without normals | 46 | 0.988 |
 ///
 /// "From above" are parts that stand on a table, of which no direction from below sees anything.
 /// The normals are exact where there are some; those of a scanner are not quite.
