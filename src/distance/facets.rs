@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use super::crease::{Plane, meet};
+use super::seam::SETTLED;
 use crate::error::MeshingError;
 use crate::eval::Program;
-use crate::mesh::Subject;
-use crate::mesh::{Slope, Slopes};
+use crate::mesh::{Slopes, Subject};
 use crate::{Bounds, Cancelled, CellSize, Features, Mesh, MeshSettings, Run, ThinFeatures};
 
 /// A vertex whose corners have normals that differ by more, in radians, is on a crease.
@@ -99,15 +99,21 @@ impl Facets {
         let start = self.positions.clone();
         let limits = self.shortest_sides();
         let held = |at: usize, to: DVec3| start[at] + (to - start[at]).clamp_length_max(STRIDE * limits[at]);
-        for round in 0..2 {
-            let found = slopes.at(&self.positions, run)?;
-            for (at, slope) in found.iter().enumerate().filter(|(at, _)| !creased[*at]) {
+        // Nothing is asked of points without triangles.
+        let mut open: Vec<usize> = (0..start.len()).filter(|at| !creased[*at] && limits[*at] > 0.0).collect();
+        let mut normals = vec![DVec3::ZERO; start.len()];
+        for _ in 0..2 {
+            let points: Vec<DVec3> = open.iter().map(|at| self.positions[*at]).collect();
+            let mut found = slopes.at(&points, run)?.into_iter();
+            open.retain(|&at| {
+                let slope = found.next().unwrap_or_default();
                 self.positions[at] = held(at, self.positions[at] + slope.newton());
-            }
-            if round == 1 {
-                self.take_normals(&found, &creased);
-            }
+                normals[at] = slope.normal();
+                // What is left of a step goes with its square.
+                slope.distance() > SETTLED * slopes.precision
+            });
         }
+        self.take_normals(&normals);
         self.polish_creases(slopes, (&creased, &limits), held, run)
     }
 
@@ -156,12 +162,13 @@ impl Facets {
         Ok(())
     }
 
-    fn take_normals(&mut self, found: &[Slope], creased: &[bool]) {
+    /// Takes normals of vertices, where there are any.
+    fn take_normals(&mut self, found: &[DVec3]) {
         for (triangle, normals) in self.triangles.iter().zip(&mut self.normals) {
             for (v, normal) in triangle.iter().zip(normals) {
-                let slope = &found[*v as usize];
-                if !creased[*v as usize] && slope.normal() != DVec3::ZERO {
-                    *normal = slope.normal();
+                let own = found[*v as usize];
+                if own != DVec3::ZERO {
+                    *normal = own;
                 }
             }
         }

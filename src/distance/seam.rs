@@ -29,7 +29,7 @@ const PROBES: [f64; 2] = [0.25, 0.75];
 const STRIDE: f64 = 0.3;
 
 /// A step that is shorter than this part of what values may be off is the last one.
-const SETTLED: f64 = 0.3;
+pub(super) const SETTLED: f64 = 0.3;
 
 /// No side.
 const NONE: u32 = u32::MAX;

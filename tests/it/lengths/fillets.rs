@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
-use rvachev::{Blend, Plane, PlaneBounds, Profile, Solid, rad};
+use rvachev::program::Region;
+use rvachev::{Blend, Bounds, Plane, PlaneBounds, Profile, Solid, rad};
 
 use super::subject::bounded;
 use super::{Outcome, TOLERANCE, at, fillet, layer, measures, report, sag};
@@ -366,5 +367,21 @@ fn chamfers_stay_below_flush_faces_and_within_their_legs() -> Outcome {
         let (p, out) = (DVec3::from(p), DVec3::new(-0.05, 0.05, 0.0));
         assert!(solid.contains(p - out)? && !solid.contains(p + out)?, "{p}");
     }
+    Ok(())
+}
+
+/// Values of convex leaves change by no more than 1 per length unit: where one is farther off 0 than
+/// the leg, there is no face.
+#[test]
+fn chamfers_are_left_out_beyond_their_legs() -> Outcome {
+    let (plate, pin) = (Solid::cuboid([2.0, 2.0, 0.4]), Solid::superellipsoid([0.5, 0.5, 1.0], 0.3, 0.7));
+    let solid = plate.union_with(pin, Blend::Chamfer { leg: 0.15 });
+    assert!(solid.contains([0.53, 0.0, 0.23])? && !solid.contains([0.53, 0.0, 0.33])?);
+    assert!(solid.contains([0.63, 0.0, 0.205])? && !solid.contains([0.66, 0.0, 0.205])?);
+    let beside = Bounds::new(DVec3::new(0.75, -0.1, 0.1), DVec3::new(0.95, 0.1, 0.3));
+    let Region::Surface(narrowed) = solid.surface_program()?.narrow(&beside) else {
+        return Err("the face of the plate is there".into());
+    };
+    assert_eq!(narrowed.leaf_count(), 1);
     Ok(())
 }
