@@ -77,6 +77,11 @@ impl Program {
         Some(parts)
     }
 
+    /// Whether its root reads more of its operands than their signs.
+    pub(crate) fn is_blend(&self) -> bool {
+        matches!(&self.nodes[self.root.node()].kind, Kind::Join { rule, .. } if *rule != Rule::MinMax)
+    }
+
     /// The number of its leaf, if it is one leaf and nothing else.
     pub(crate) fn only_leaf(&self) -> Option<u32> {
         match &self.nodes[..] {
