@@ -3,7 +3,7 @@
 //! A concave value is above 0 on one piece of any line, a convex one on all but one. Minima keep
 //! concave values concave and maxima convex ones convex; a negation exchanges the two.
 
-use super::program::{Edge, Kind, Node, Program};
+use super::program::{Kind, Node, Program};
 use rvachev_field::Op;
 use rvachev_field::Rule;
 
@@ -55,17 +55,31 @@ impl Program {
     }
 
     /// The operands of a union of concave values: from outside, the first crossing of a ray is the
-    /// nearest of theirs, and each of them has one at most on the way in.
+    /// nearest of theirs, and each of them has one at most on the way in. One operand may be
+    /// another, the last, if it is expensive: a ray looks for it up to where it meets the others.
     pub(crate) fn united(&self) -> Option<Vec<Program>> {
         let root = &self.nodes[self.root.node()];
         if self.root.negated() || !matches!(root.kind, Kind::Join { op: Op::Or, rule: Rule::MinMax, .. }) {
             return None;
         }
-        let operand = |&edge: &Edge| {
-            let program = self.trimmed(self.nodes.to_vec(), self.operands.to_vec(), self.simpler.to_vec(), edge);
-            (program.bend() == Some(Bend::Concave)).then_some(program)
-        };
-        self.list(root).iter().map(operand).collect()
+        let (mut parts, mut last) = (Vec::new(), None);
+        for &edge in self.list(root) {
+            let part = self.trimmed(self.nodes.to_vec(), self.operands.to_vec(), self.simpler.to_vec(), edge);
+            if part.bend() == Some(Bend::Concave) {
+                parts.push(part);
+            } else if last.is_none() && part.cost() > part.leaf_count() {
+                last = Some(part);
+            } else {
+                return None;
+            }
+        }
+        parts.extend(last);
+        Some(parts)
+    }
+
+    /// Whether its root reads more of its operands than their signs.
+    pub(crate) fn is_blend(&self) -> bool {
+        matches!(&self.nodes[self.root.node()].kind, Kind::Join { rule, .. } if *rule != Rule::MinMax)
     }
 
     /// The number of its leaf, if it is one leaf and nothing else.

@@ -14,7 +14,8 @@
 //! along the axes that the leaf depends on: it is narrowed to all of the sixteen boxes together. A
 //! cell is no larger than what its leaves' boxes leave of it. In a small union of convex leaves
 //! rays look for each leaf by itself, in the part of the cell that the leaf may reach, and the
-//! nearest crossing counts: nothing is divided further to part the leaves.
+//! nearest crossing counts: nothing is divided further to part the leaves. What else is united with
+//! them, as the material of a fillet is, and takes long is looked for last, up to that crossing.
 //!
 //! All programs of a solid agree on the sign of any point, and the parts of a ray in the boxes
 //! abut to the bit, as the crossings with a plane are computed alike on both sides of it: a
@@ -188,7 +189,8 @@ const CROWD: usize = 24;
 const UNITED: usize = 8;
 
 /// Cells with a leaf that costs more, in ordinary leaves, are halved more than once in one go: to
-/// narrow it to many boxes takes little longer than to narrow it to one.
+/// narrow it to many boxes takes little longer than to narrow it to one. So are those of a crowd
+/// whose values are blended: of large boxes a long narrowing tells little, as margins add up.
 const DEAR: usize = 8;
 const AT_ONCE: u32 = BOXES_AT_ONCE.ilog2();
 
@@ -302,8 +304,9 @@ impl Cell {
     /// Its halves, made when they are first asked for.
     pub(super) fn halves(&self) -> &Halves {
         self.halves.get_or_init(|| {
-            let dear = self.program.dear_axes(DEAR);
-            let (axes, times) = dear.map_or(([true; 3], 1), |axes| (axes, AT_ONCE));
+            let crowded = (self.leaves > CROWD && self.program.is_blend()).then_some([true; 3]);
+            let axes = self.program.dear_axes(DEAR).or(crowded);
+            let (axes, times) = axes.map_or(([true; 3], 1), |axes| (axes, AT_ONCE));
             let mut boxes = Vec::new();
             self.around.boxes(&self.bounds, axes, times, &mut boxes);
             if boxes.len() > 2 {
@@ -313,8 +316,8 @@ impl Cell {
         })
     }
 
-    /// The operands of a union of a few concave values, each in its part of the cell; they are made
-    /// when they are first asked for.
+    /// The operands of a union of a few concave values, and perhaps of an expensive one behind them,
+    /// each in its part of the cell; they are made when they are first asked for.
     pub(super) fn united(&self) -> Option<&[Cell]> {
         let parts = self.united.get_or_init(|| {
             if self.leaves > UNITED {

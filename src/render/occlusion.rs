@@ -1,15 +1,17 @@
 //! How much of the key light and of the sky a point sees.
 //!
 //! Every point sends a few rays, and its neighbours send others: a block of 4 × 4 pixels uses 16
-//! times as many directions. The mean over 5 × 5 pixels, those on its border at half weight,
-//! has each of them once, so that the result is as smooth as if every point had sent them all:
+//! times as many directions. 5 × 5 pixels, those on its border at half weight, have each of them
+//! once, so that their mean is as smooth as if every point had sent them all:
 //!
 //! ```text
 //!      ½  1  1  1  ½       pixel (x, y) uses the pattern (x mod 4, y mod 4);
 //!      a  b  c  d  a       a at both ends counts once
 //! ```
 //!
-//! Only neighbours of the same piece, about the same normal and the same tangent plane count.
+//! Only neighbours of the same piece, about the same normal and the same tangent plane count. Where
+//! some do not, beside an edge or in a fillet that is a few pixels wide, the point itself sends the
+//! rays of the patterns that are missing: all directions count alike at every pixel.
 //!
 //! Sources: A. Keller, W. Heidrich, *Interleaved sampling* (2001); M. Roberts, *The unreasonable
 //! effectiveness of quasirandom sequences* (2018), for the directions; R. Cook, L. Porter,
@@ -17,7 +19,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3, Vec4};
+use glam::{DVec2, DVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::facets::Facets;
@@ -35,9 +37,8 @@ const RAYS: usize = 4;
 const PATTERNS: usize = 16;
 const ORDER: [usize; PATTERNS] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5];
 
-/// Pixels that a mean reaches to each side, and those that it and its repeats reach.
-const REACH: usize = 2;
-pub(super) const FAR_REACH: usize = (1 + AGAIN) * REACH;
+/// Pixels that a mean reaches to each side.
+pub(super) const REACH: usize = 2;
 
 /// Points along the side of a tile.
 pub(super) const TILE: usize = 32;
@@ -116,6 +117,26 @@ impl<'a> Obstacles<'a> {
         self.is_hard
     }
 
+    /// What the points of some rows of a picture see, whose first row is `top`: the mean of those
+    /// about each of them. `pixel` tells how large a pixel is at a distance.
+    pub(super) fn smoothed(
+        &self,
+        spots: &[Spot],
+        (width, top): (usize, usize),
+        pixel: impl Fn(f64) -> f64 + Sync,
+        run: &Run,
+    ) -> Result<Vec<Visibility>, Cancelled> {
+        let [to_see, to_smooth] = run.stages([0.7, 0.3]);
+        let own = self.seen(spots, width, |at| number(at % width, top + at / width), &to_see)?;
+        let rows = Rows { spots, seen: &own, width, top };
+        let mut means = rows.smoothed(pixel, |spot, pattern| self.open(spot, ORDER[pattern]), &to_smooth)?;
+        if self.is_hard() {
+            // The edges of a light without extent stay as they are.
+            means.iter_mut().zip(&own).for_each(|(mean, own)| mean.key = own.key);
+        }
+        Ok(means)
+    }
+
     /// What each point sees by its own rays; `pattern` gives a number for the point at an index.
     /// They go tile by tile of a picture with rows of `width`, as neighbours meet the same facets.
     pub(super) fn seen(
@@ -186,8 +207,8 @@ impl<'a> Obstacles<'a> {
             }
         }
         if let Some([x, y, up]) = self.skies.get(pattern) {
-            let (t, b) = spot.normal.any_orthonormal_pair();
             let n = spot.normal;
+            let (t, b) = across(n);
             let directions = [x * t.x + y * b.x + up * n.x, x * t.y + y * b.y + up * n.y, x * t.z + y * b.z + up * n.z];
             // What is far away hides less of the sky: light comes in from its sides.
             let hits = self.facets.hits(origin, &directions, (1 << RAYS) - 1);
@@ -229,6 +250,15 @@ impl<'a> Obstacles<'a> {
     }
 }
 
+/// Two unit vectors at right angles to a normal and to each other, which turn steadily with it: the
+/// patterns of neighbours in a fillet would not complete each other otherwise. They jump where the
+/// normal is along one direction, which no face of a part is likely to have.
+fn across(normal: Vec3) -> (Vec3, Vec3) {
+    const UNLIKELY: Vec3 = Vec3::new(0.31, -0.57, 0.76);
+    let first = normal.cross(UNLIKELY).try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
+    (first, normal.cross(first))
+}
+
 /// The directions of each pattern, those of one pattern far apart in their sequence: their
 /// components.
 fn patterns(direction: impl Fn(usize) -> DVec3) -> Vec<[Vec4; 3]> {
@@ -236,69 +266,67 @@ fn patterns(direction: impl Fn(usize) -> DVec3) -> Vec<[Vec4; 3]> {
     (0..PATTERNS).map(|pattern| [0, 1, 2].map(|axis| Vec4::from_array(lanes(pattern).map(|d| d[axis])))).collect()
 }
 
-/// The weights of the pixels that a mean reaches along a row or a column, and their sum over all.
+/// The weights of the pixels that a mean reaches along a row or a column.
 const WEIGHTS: [f32; 2 * REACH + 1] = [0.5, 1.0, 1.0, 1.0, 0.5];
-const WHOLE: f32 = 16.0;
 
-/// How often means that some directions are missing from are averaged again.
-const AGAIN: usize = 2;
+/// The number of the pattern that a pixel uses.
+#[inline]
+fn number(x: usize, y: usize) -> usize {
+    x % 4 + 4 * (y % 4)
+}
 
-/// The mean of what the points of a picture see: `width` of them a row.
-///
-/// Beside an edge a part of the pixels do not count, and so a part of the directions are missing,
-/// others at each pixel: there the means are averaged again.
-pub(super) fn smoothed(
-    spots: &[Spot],
-    seen: &[Visibility],
-    width: usize,
-    pixel: impl Fn(f64) -> f64 + Sync,
-) -> Vec<Visibility> {
-    let about = About { spots, width, height: spots.len() / width };
-    let calm = calm(seen, width);
-    let mut means = vec![(Visibility::FULL, WHOLE); spots.len()];
-    means.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
-        for (x, mean) in row.iter_mut().enumerate() {
-            let own = &spots[y * width + x];
-            if (own.is_solid() || own.is_ground()) && !about.rows(y).all(|row| calm[row * width + x]) {
-                *mean = about.mean(x, y, 4.0 * pixel(own.distance), |at| (seen[at], 1.0));
+/// The points of some rows of a picture, from row `top` on, and what each sees by its own rays.
+#[derive(Clone, Copy)]
+pub(super) struct Rows<'a> {
+    pub(super) spots: &'a [Spot],
+    pub(super) seen: &'a [Visibility],
+    pub(super) width: usize,
+    pub(super) top: usize,
+}
+
+impl Rows<'_> {
+    /// The mean of what the points see; `trace` tells what one sees by the rays of a pattern, and
+    /// `pixel` how large a pixel is at a distance.
+    fn smoothed(
+        &self,
+        pixel: impl Fn(f64) -> f64 + Sync,
+        trace: impl Fn(&Spot, usize) -> Visibility + Sync,
+        run: &Run,
+    ) -> Result<Vec<Visibility>, Cancelled> {
+        let Rows { spots, seen, width, .. } = *self;
+        let calm = calm(seen, width);
+        let mut means = vec![Visibility::FULL; spots.len()];
+        means.par_chunks_mut(width).enumerate().try_for_each(|(y, row)| {
+            run.check()?;
+            for (x, mean) in row.iter_mut().enumerate() {
+                let own = &spots[y * width + x];
+                if (own.is_solid() || own.is_ground()) && !self.reached(y).all(|row| calm[row * width + x]) {
+                    *mean = self.mean(x, y, 4.0 * pixel(own.distance), &trace);
+                }
             }
-        }
-    });
-    for _ in 0..AGAIN {
-        let before = means.clone();
-        means.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
-            for (x, mean) in row.iter_mut().enumerate().filter(|(_, mean)| mean.1 < WHOLE) {
-                let near = 4.0 * pixel(spots[y * width + x].distance);
-                *mean = (about.mean(x, y, near, |at| before[at]).0, mean.1);
-            }
-        });
+            Ok(())
+        })?;
+        Ok(means)
     }
-    means.into_iter().map(|(mean, _)| mean).collect()
-}
 
-/// The points about one of a picture.
-struct About<'a> {
-    spots: &'a [Spot],
-    width: usize,
-    height: usize,
-}
-
-impl About<'_> {
     /// The rows that a mean reaches.
-    fn rows(&self, y: usize) -> std::ops::Range<usize> {
-        y.saturating_sub(REACH)..(y + REACH + 1).min(self.height)
+    fn reached(&self, y: usize) -> std::ops::Range<usize> {
+        y.saturating_sub(REACH)..(y + REACH + 1).min(self.spots.len() / self.width)
     }
 
-    /// The mean of the points about one that are on the same face, each with a weight of its own,
-    /// and the sum of all weights; those farther than `near` from its tangent plane do not count.
+    /// The mean over all patterns, each of them at the points about one that are on the same face
+    /// and use it, or, if none does, at the point itself. Points farther than `near` from its
+    /// tangent plane are not on its face.
     #[inline]
-    fn mean(&self, x: usize, y: usize, near: f64, value: impl Fn(usize) -> (Visibility, f32)) -> (Visibility, f32) {
+    fn mean(&self, x: usize, y: usize, near: f64, trace: &impl Fn(&Spot, usize) -> Visibility) -> Visibility {
         let place = y * self.width + x;
         let own = &self.spots[place];
         let is_ground = own.is_ground();
         let (left, right) = (x.saturating_sub(REACH), (x + REACH + 1).min(self.width));
-        let (mut key, mut sky, mut sum) = (0.0, 0.0, 0.0);
-        for row in self.rows(y) {
+        // Key, sky and weight of each pattern.
+        let mut sums = [[0.0f32; 3]; PATTERNS];
+        let mut counted = false;
+        for row in self.reached(y) {
             let down = WEIGHTS[row + REACH - y];
             for column in left..right {
                 let at = row * self.width + column;
@@ -309,16 +337,30 @@ impl About<'_> {
                     other.is_solid() && own.normal.dot(other.normal) > 0.9 && own.steps(other) <= near
                 };
                 if counts {
-                    let (seen, share) = value(at);
-                    let weight = down * WEIGHTS[column + REACH - x] * share;
-                    key += weight * seen.key;
-                    sky += weight * seen.sky;
-                    sum += weight;
+                    counted = true;
+                    let Visibility { key, sky } = self.seen[at];
+                    let weight = down * WEIGHTS[column + REACH - x];
+                    let sum = &mut sums[number(column, self.top + row)];
+                    *sum = [sum[0] + weight * key, sum[1] + weight * sky, sum[2] + weight];
                 }
             }
         }
-        // What counts not even itself has no normal.
-        if sum > 0.0 { (Visibility { key: key / sum, sky: sky / sum }, sum) } else { (value(place).0, WHOLE) }
+        if !counted {
+            // What counts not even itself has no normal.
+            return self.seen[place];
+        }
+        let (mut key, mut sky) = (0.0, 0.0);
+        for (pattern, [own_key, own_sky, weight]) in sums.into_iter().enumerate() {
+            if weight > 0.0 {
+                key += own_key / weight;
+                sky += own_sky / weight;
+            } else {
+                let missing = trace(own, pattern);
+                key += missing.key;
+                sky += missing.sky;
+            }
+        }
+        Visibility { key: key / PATTERNS as f32, sky: sky / PATTERNS as f32 }
     }
 }
 
@@ -340,6 +382,8 @@ fn calm(seen: &[Visibility], width: usize) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
+
     use super::*;
     use crate::render::gbuffer::Surface;
 
@@ -363,12 +407,41 @@ mod tests {
     fn rows_are_those_of_the_whole() {
         let (width, height) = (24, 60);
         let (spots, seen) = corner(width, height);
-        let whole = smoothed(&spots, &seen, width, |_| 1.0);
+        let trace = |spot: &Spot, pattern: usize| Visibility { key: spot.normal.x + pattern as f32, sky: 0.3 };
+        let smoothed = |first: usize, last: usize| {
+            let (from, to) = (first * width, last * width);
+            let rows = Rows { spots: &spots[from..to], seen: &seen[from..to], width, top: first };
+            rows.smoothed(|_| 1.0, trace, &Run::default()).unwrap()
+        };
+        let whole = smoothed(0, height);
         for (from, to) in [(0, 20), (20, 40), (11, 19), (40, 60)] {
-            let (first, last) = (from.max(FAR_REACH) - FAR_REACH, (to + FAR_REACH).min(height));
-            let part =
-                smoothed(&spots[first * width..last * width], &seen[first * width..last * width], width, |_| 1.0);
+            let (first, last) = (from.max(REACH) - REACH, (to + REACH).min(height));
+            let part = smoothed(first, last);
             assert_eq!(part[(from - first) * width..(to - first) * width], whole[from * width..to * width]);
         }
+    }
+
+    /// Rounding about the horizontal turns nothing round.
+    #[test]
+    fn directions_turn_steadily_with_the_normal() {
+        for i in 0..64u8 {
+            let [(t, b), (other, _)] = [1e-5f32, -1e-5].map(|z| across(Vec2::from_angle(0.1 * f32::from(i)).extend(z)));
+            let n = Vec2::from_angle(0.1 * f32::from(i)).extend(0.0);
+            assert!((t.length() - 1.0).abs() < 1e-5 && (b.length() - 1.0).abs() < 1e-4 && t.dot(b).abs() < 1e-5);
+            assert!(t.dot(n).abs() < 1e-4 && t.distance(other) < 1e-3, "{n}: {t} {other}");
+        }
+    }
+
+    /// Where each pattern sees another share of light, every pixel beside an edge sees the same.
+    #[test]
+    fn all_patterns_count_alike_beside_an_edge() {
+        let (width, height) = (24, 24);
+        let (spots, _) = corner(width, height);
+        let of_pattern = |pattern: usize| Visibility { key: 1.0, sky: ORDER[pattern] as f32 / 16.0 };
+        let seen: Vec<Visibility> = (0..width * height).map(|at| of_pattern(number(at % width, at / width))).collect();
+        let rows = Rows { spots: &spots, seen: &seen, width, top: 0 };
+        let means = rows.smoothed(|_| 1.0, |_, pattern| of_pattern(pattern), &Run::default()).unwrap();
+        let sky = (0..PATTERNS).map(|pattern| of_pattern(pattern).sky).sum::<f32>() / PATTERNS as f32;
+        assert!(means.iter().all(|mean| (mean.sky - sky).abs() < 1e-6 && (mean.key - 1.0).abs() < 1e-6));
     }
 }

@@ -20,7 +20,7 @@ use super::draft::Draft;
 use super::gbuffer::{Surface, Window};
 use super::lines::Lines;
 use super::materials::Materials;
-use super::occlusion::{FAR_REACH, Obstacles, TILE, smoothed};
+use super::occlusion::{Obstacles, REACH, TILE};
 use super::scene::Scene;
 use super::settings::{RenderSettings, Style};
 use super::shade::{Studio, Visibility};
@@ -141,7 +141,7 @@ impl Picture<'_> {
             return self.plain((top, end), run, finish, pixels);
         }
         // One pixel for the comparison with neighbours, and what the means and the lines reach.
-        let halo = 1 + (FAR_REACH as u32).max(if style == Style::Technical { Lines::reach(height) } else { 0 });
+        let halo = 1 + (REACH as u32).max(if style == Style::Technical { Lines::reach(height) } else { 0 });
         let (first, last) = (top.saturating_sub(halo), (end + halo).min(height));
         let window = Window { top: first, height: last - first, ..Window::whole(width, height) };
         // How long it takes to see what the pixels show, how much light is there, what is at edges,
@@ -161,15 +161,8 @@ impl Picture<'_> {
         let open = match obstacles {
             None => vec![Visibility::FULL; spots.len()],
             Some(obstacles) => {
-                let pattern = |i: usize| (i % width as usize) % 4 + 4 * ((first as usize + i / width as usize) % 4);
-                let own = obstacles.seen(&spots, width as usize, pattern, &to_light)?;
-                let sharp = obstacles.is_hard().then(|| own.clone());
-                let mut open = smoothed(&spots, &own, width as usize, |t| self.rays.pixel_size(t));
-                // The edges of a light without extent stay as they are.
-                for (open, own) in open.iter_mut().zip(sharp.iter().flatten()) {
-                    open.key = own.key;
-                }
-                open
+                let rows = (width as usize, first as usize);
+                obstacles.smoothed(&spots, rows, |t| self.rays.pixel_size(t), &to_light)?
             }
         };
         to_light.report(1.0);

@@ -147,12 +147,13 @@ impl Tracer {
                 continue;
             }
             let united = packet.united(cell);
-            let known = if united.is_some() { Known::ANY } else { packet.slopes(cell) };
+            let is_whole = united.is_some_and(are_bent);
+            let known = if is_whole { Known::ANY } else { packet.slopes(cell) };
             if !packet.inside && known.slopes.falls {
                 // Seen from behind.
                 continue;
             }
-            if united.is_none() && divides(cell, count, &known) {
+            if !is_whole && divides(cell, count, &known) {
                 cell.halves().far_first(&|axis, plane| view.looks_up(axis, plane), &mut |cell| pending.push(cell));
                 continue;
             }
@@ -171,6 +172,7 @@ impl Tracer {
                     }
                 }
                 if !self.spans.is_empty() {
+                    let known = if united.is_some() { packet.slopes(part) } else { known.clone() };
                     self.marcher.march(cells, part, &known, &self.rays, &self.spans, surfaces);
                 }
             }
@@ -220,11 +222,12 @@ impl Tracer {
                 let mut packet = Packet::new(eye);
                 self.spans.iter().for_each(|span| packet.add(&self.rays[span.ray as usize]));
                 let united = packet.united(cell);
-                let known = if united.is_some() { Known::ANY } else { packet.slopes(cell) };
+                let is_whole = united.is_some_and(are_bent);
+                let known = if is_whole { Known::ANY } else { packet.slopes(cell) };
                 if !packet.inside && known.slopes.falls {
                     continue;
                 }
-                if united.is_none() && divides(cell, self.spans.len(), &known) {
+                if !is_whole && divides(cell, self.spans.len(), &known) {
                     let first = lists.len();
                     lists.extend(self.spans.iter().map(|span| span.ray));
                     let is_above = |axis: usize, _: f64| octant >> axis & 1 == 0;
@@ -237,6 +240,7 @@ impl Tracer {
                     self.nearer.clear();
                     self.nearer.extend(rays.filter_map(|ray| nearer(part, ray, &self.rays, surfaces, tie)));
                     if !self.nearer.is_empty() {
+                        let known = if united.is_some() { packet.slopes(part) } else { known.clone() };
                         self.marcher.march(cells, part, &known, &self.rays, &self.nearer, surfaces);
                     }
                 }
@@ -410,6 +414,11 @@ fn nearer(cell: &Cell, ray: u32, rays: &[Ray], surfaces: &[Surface], tie: f64) -
 /// box on one side of it from end to end, and that on the other not at all.
 const STEEPEST: f64 = 1e200;
 
+/// Whether all parts of a cell bend one way along rays: to divide it would part them no further.
+fn are_bent(parts: &[Cell]) -> bool {
+    parts.iter().all(|part| part.bend.is_some())
+}
+
 /// Cells of one leaf whose value bends one way are divided down to this part of the whole.
 const PLAIN: f64 = 0.5;
 
@@ -430,16 +439,18 @@ const TIE: f64 = 1e-7;
 /// No cell is divided below this part of the whole.
 const FINEST: f64 = 1.0 / 4096.0;
 
-/// More rays than this, times leaves, are better off in the halves of a cell; of leaves that search
-/// for their values, which many points together take less of, if the values are no steeper than
-/// this: halves would have little else to tell.
-const RAYS: usize = 64;
+/// More rays than this, times leaves, are better off in the halves of a cell: to make one takes as
+/// long as some dozens of them do; of leaves that search for their values, which many points
+/// together take less of, if the values are no steeper than this: halves would have little else to
+/// tell.
+const RAYS: usize = 256;
 const SEARCHED: usize = 512;
 const STEEP: f64 = 4.0;
 
-/// The same of ordinary leaves whose values are steeper, or whose slopes are without bound: many a
-/// ray is divided by intervals then.
+/// The same where the values are steeper, or the slopes are without bound: many a ray is divided by
+/// intervals then.
 const BLIND: usize = 16;
+const SEARCHED_BLINDLY: usize = 64;
 
 /// Whether `count` rays are better off in the halves of a cell, where slopes are `known`.
 fn divides(cell: &Cell, count: usize, known: &Known) -> bool {
@@ -456,10 +467,11 @@ fn divides(cell: &Cell, count: usize, known: &Known) -> bool {
     }
     let one_way = bent || known.is_one_way();
     let steepest = known.slopes.value.magnitude();
-    let most = match cost > leaves {
-        true if steepest < STEEP => SEARCHED,
-        false if steepest >= STEEP => BLIND,
-        _ => RAYS,
+    let most = match (cost > leaves, steepest < STEEP) {
+        (true, true) => SEARCHED,
+        (true, false) => SEARCHED_BLINDLY,
+        (false, true) => RAYS,
+        (false, false) => BLIND,
     };
     let much = if one_way { cost > 1 && !cell.is_stale() && count * cost > 8192 } else { count * leaves > most };
     share > FINEST && much

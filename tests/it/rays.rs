@@ -365,13 +365,22 @@ fn pictures_of_blades_and_steps_see_what_single_rays_hit() {
     compare_with_single_rays("steps", &(steps() & Solid::cuboid([2.0, 1.6, 1.8])));
 }
 
-/// Faces whose planes turn with what they are held by.
+/// Faces whose planes turn with what they are held by, and what a ball leaves: rays look for them
+/// up to where they meet the operands.
 #[test]
-fn pictures_of_chamfers_see_what_single_rays_hit() {
-    let (plate, blend) = (Solid::cuboid([2.0, 2.0, 0.4]), Blend::Chamfer { leg: 0.15 });
+fn pictures_of_chamfers_and_fillets_see_what_single_rays_hit() {
+    let plate = Solid::cuboid([2.0, 2.0, 0.4]);
     let spike = Solid::superellipsoid([0.5, 0.5, 1.0], 0.3, 0.7).rotate_x(deg(12.0));
-    let joint = plate.union_with(&spike, blend);
-    compare_view("chamfered joint", &joint, &Camera::framing(&joint.bounds().unwrap()));
+    let joint = |blend| plate.union_with(&spike, blend);
+    let angle = (&plate | Solid::cuboid([0.4, 2.0, 1.6]).translate([0.8, 0.0, 0.6])).filleted(0.2);
+    let solids = [
+        ("chamfered", joint(Blend::Chamfer { leg: 0.15 })),
+        ("filleted", joint(Blend::Fillet { radius: 0.15 })),
+        ("an angle", angle),
+    ];
+    for (name, solid) in solids {
+        compare_view(name, &solid, &Camera::framing(&solid.bounds().unwrap()));
+    }
 }
 
 fn compare_with_single_rays(name: &str, solid: &Solid) {
