@@ -60,7 +60,7 @@ mod tests {
             levels.down().unwrap();
         }
         assert_eq!(count, 30);
-        let seen = seen.lock().unwrap();
+        let seen = seen.lock().unwrap().clone();
         assert_eq!([seen[0], seen[2], seen[4], seen[6]], [0.0, 0.5, 0.75, 0.875]);
         assert!(seen.is_sorted());
         run.cancel.cancel();
