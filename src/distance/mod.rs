@@ -16,6 +16,7 @@ mod column;
 mod crease;
 mod facets;
 mod mend;
+mod moved;
 mod piece;
 mod plots;
 mod quilt;
@@ -58,7 +59,11 @@ pub(crate) fn surface_of(solid: &Solid) -> Result<Arc<Surface>, SolidError> {
 
 /// The same on the threads of a run, which may be cancelled.
 pub(crate) fn surface_with(solid: &Solid, run: &Run) -> Result<Arc<Surface>, CompileError> {
-    let programs = compiled_with(solid, run)?;
+    let [to_compile, run] = &run.stages([0.1, 0.9]);
+    let programs = compiled_with(solid, to_compile)?;
+    if let Some(surface) = moved::moved(solid, run)? {
+        return Ok(surface);
+    }
     // Feet are refined on the field itself: a ten thousandth of the solid does.
     let length = 1e-1 * programs.bounds.longest_side();
     let wanted = Wanted { length, tolerance: None, region: &Bounds::ALL };

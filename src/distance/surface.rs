@@ -84,7 +84,7 @@ impl DistanceSource for FromMeshes {
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
         let enough = CELLS + CELLS_A_LEAF * programs.surface.leaf_count() as f64;
         // Of others, tips and cusps hide something in cells of any size.
-        let is_gentle = programs.surface.is_gentle();
+        let is_gentle = programs.surface.has_gentle_leaves();
         let (mut done, mut best) = (LOOKING, None);
         let subject = Subject { program: &programs.surface, bounds, palette: None, whole: None };
         let look = run.stage(0.0, done);

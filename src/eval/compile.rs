@@ -62,6 +62,11 @@ impl Compiled {
         (self.surface.value(foot).abs() <= least).then_some(foot)
     }
 
+    /// On how many sides of the surface, inside and outside, the value is the distance.
+    pub(crate) fn exact_sides(&self) -> usize {
+        usize::from(self.exact.inside) + usize::from(self.exact.outside)
+    }
+
     /// The axis along which the solid is a column without end: the one axis that its box is
     /// infinite along, where its value does not depend on it.
     pub(crate) fn flat_axis(&self) -> Option<usize> {

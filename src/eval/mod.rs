@@ -45,6 +45,7 @@ mod register;
 mod repeat;
 mod rise;
 mod runs;
+mod sampled;
 mod scene;
 mod shares;
 mod sides;

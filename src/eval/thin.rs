@@ -9,9 +9,9 @@ use crate::Bounds;
 use rvachev_field::Rule;
 
 impl Program {
-    /// Whether the value changes by at most 1 per length unit: its leaves do, and so does what
-    /// joins them.
-    pub(crate) fn is_gentle(&self) -> bool {
+    /// Whether the values of its leaves change by at most 1 per length unit where they are not
+    /// deformed, and joins leave it at that.
+    pub(crate) fn has_gentle_leaves(&self) -> bool {
         self.nodes.iter().all(|node| match &node.kind {
             Kind::Leaf(leaf) => {
                 let field = &self.instance(*leaf).field;
@@ -22,9 +22,24 @@ impl Program {
         })
     }
 
-    /// Whether no leaf is deformed, so that those that change by 1 per length unit do so in the solid.
-    pub(crate) fn is_unbent(&self) -> bool {
+    /// Whether the value changes by at most 1 per length unit: that of its leaves does, and none is
+    /// deformed.
+    pub(crate) fn is_gentle(&self) -> bool {
+        self.has_gentle_leaves() && self.is_unbent()
+    }
+
+    fn is_unbent(&self) -> bool {
         self.nodes.iter().filter_map(Node::valued_by).all(|leaf| self.instance(leaf).frame == 0)
+    }
+
+    /// By how much the value of gentle leaves changes per length unit in a box at most: by more than
+    /// 1 where they are deformed. Of others it is not told.
+    pub(crate) fn slope_within(&self, region: &Bounds) -> f64 {
+        match (self.has_gentle_leaves(), self.is_unbent()) {
+            (true, true) => 1.0,
+            (true, false) => self.steepest(region),
+            (false, _) => f64::INFINITY,
+        }
     }
 
     /// Which leaves of the solid, by their numbers, are convex and thinner than this, in length
@@ -82,5 +97,36 @@ impl Program {
             // Boxes in frames are not those of the world.
             is_one && (leaf.frame != 0 || !leaf.bounds.intersection(region).is_empty())
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use crate::distance::compiled;
+    use crate::{Bounds, Solid, rad};
+
+    #[test]
+    fn values_change_by_no_more_than_slopes_tell() {
+        let bar = Solid::cuboid([1.0, 0.8, 2.0]).translate([2.0, 0.3, 0.0]);
+        let (mut steepest, mut worst) = (0.0f64, 0.0f64);
+        for solid in
+            [bar.clone(), bar.twist(rad(0.6)), bar.twist(rad(1.0)) | Solid::sphere(1.0), bar.bend(0.2, rad(0.4))]
+        {
+            let program = &compiled(&solid).unwrap().surface;
+            for n in 0..200 {
+                let at = |k: f64| (f64::from(n) * k).fract();
+                let middle = 4.0 * DVec3::new(at(0.618), at(0.387), at(0.7243)) - 2.0;
+                let region = Bounds::from_center(middle, DVec3::splat(0.1));
+                let [p, q] = [region.min, region.max - 0.2 * DVec3::new(at(0.17), at(0.29), at(0.53))];
+                let rise = (program.value(p) - program.value(q)).abs() / p.distance(q);
+                steepest = steepest.max(rise);
+                worst = worst.max(rise / program.slope_within(&region));
+            }
+        }
+        assert!(worst <= 1.0, "{worst}");
+        // Deformed ones change by more than 1.
+        assert!(steepest > 1.3, "{steepest}");
     }
 }

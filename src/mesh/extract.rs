@@ -124,9 +124,9 @@ pub(crate) trait Sampler: Sync {
         false
     }
 
-    /// The most that the value changes by per length unit in a block. The default knows of no
-    /// bound.
-    fn lipschitz_bound(&self, _number: usize) -> f64 {
+    /// The most that the value changes by per length unit in a block, given by its first cell. The
+    /// default knows of no bound.
+    fn lipschitz_bound(&self, _number: usize, _block: [u32; 3]) -> f64 {
         f64::INFINITY
     }
 

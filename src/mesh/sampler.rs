@@ -184,8 +184,8 @@ impl Sampler for SolidSampler<'_> {
         self.crease
     }
 
-    fn lipschitz_bound(&self, number: usize) -> f64 {
-        if self.programs.of(number).is_gentle() { 1.0 } else { f64::INFINITY }
+    fn lipschitz_bound(&self, number: usize, block: [u32; 3]) -> f64 {
+        self.programs.of(number).slope_within(&self.lattice.region(block, BLOCK))
     }
 
     fn is_bored(&self, number: usize, block: [u32; 3]) -> bool {

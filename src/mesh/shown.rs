@@ -77,7 +77,7 @@ impl Subject<'_> {
     /// in them.
     pub(crate) fn hidden(&self, mesh: &Mesh, run: &Run) -> Result<Vec<Hidden>, MeshingError> {
         let Findings { cell, lost_at, .. } = mesh.findings();
-        let is_gentle = self.program.is_gentle();
+        let is_gentle = self.program.has_gentle_leaves();
         if *cell == 0.0 || lost_at.is_empty() && !is_gentle {
             return Ok(Vec::new());
         }
@@ -104,14 +104,16 @@ impl Subject<'_> {
         Ok(suspects.into_iter().flat_map(of_block).collect())
     }
 
-    /// The cells with all nodes on one side that have the surface in them: of values that change no
-    /// faster than points move, those at the nodes tell where to look, and lead there.
+    /// The cells with all nodes on one side that have the surface in them: of values of which it is
+    /// known how much they change as points move, those at the nodes tell where to look, and lead
+    /// there.
     fn crossed(&self, blocks: &Blocks, lattice: &Lattice, beside: Beside, run: &Run) -> Result<Vec<Hidden>, Cancelled> {
         let sampler = SolidSampler::new(lattice, blocks, self.bounds, BESIDE);
-        // No point of a cell is farther from its nearest node than half of its diagonal.
-        let near = 0.867 * lattice.step();
         let of_block = |scratch: &mut Scratch, (number, &block): (usize, &[u32; 3])| {
             run.check()?;
+            let slope = blocks.programs.of(number).slope_within(&lattice.region(block, BLOCK));
+            // No point of a cell is farther from its nearest node than half of its diagonal.
+            let near = 0.867 * lattice.step() * slope;
             let mut values = [0.0; NODES];
             scratch.forget();
             sampler.nodes(scratch, number, block, &mut values);

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::inside::{is_inside, joint};
 use super::nearest::nearest;
 use crate::distance::{compiled, surface_of};
-use crate::eval::{Care, Evaluator, Hit, Owner, Program, Region, Tape, first_hit, limited};
+use crate::eval::{Care, Hit, Owner, Program, Region, first_hit};
 use crate::{Bounds, Interval, Solid, SolidError};
 
 impl Solid {
@@ -42,20 +42,6 @@ impl Solid {
         Ok(compiled(self)?.field.value(p))
     }
 
-    /// The field at many points, on lanes of `f64`.
-    ///
-    /// # Errors
-    /// What is wrong with the solid: see [`SolidError`].
-    pub fn values(&self, points: &[DVec3]) -> Result<Vec<f64>, SolidError> {
-        let programs = compiled(self)?;
-        let tape = Tape::new(&programs.field, &Bounds::new(DVec3::ZERO, DVec3::ZERO));
-        let axis = |axis: usize| -> Vec<f64> { points.iter().map(|p| limited(*p)[axis]).collect() };
-        let (x, y, z) = (axis(0), axis(1), axis(2));
-        let mut values = vec![0.0; points.len()];
-        Evaluator::new().shortest_values_f64(&tape, [&x, &y, &z], &mut values);
-        Ok(values)
-    }
-
     /// Whether a point is inside: the value is positive, or inside is all around, as on a face that
     /// two parts share.
     ///
@@ -74,15 +60,6 @@ impl Solid {
         Ok(is_inside(&*compiled(self)?, p.into()))
     }
 
-    /// [`contains`](Solid::contains) at many points.
-    ///
-    /// # Errors
-    /// What is wrong with the solid: see [`SolidError`].
-    pub fn contains_all(&self, points: &[DVec3]) -> Result<Vec<bool>, SolidError> {
-        let programs = compiled(self)?;
-        Ok(points.iter().map(|p| is_inside(&programs, *p)).collect())
-    }
-
     /// The field's gradient at a point; it points inward. At kinks, that of one side; 0 at a point
     /// with a coordinate that is NaN.
     ///
@@ -90,15 +67,6 @@ impl Solid {
     /// What is wrong with the solid: see [`SolidError`].
     pub fn gradient(&self, p: impl Into<DVec3>) -> Result<DVec3, SolidError> {
         Ok(compiled(self)?.field.gradient(p).1)
-    }
-
-    /// [`gradient`](Solid::gradient) at many points.
-    ///
-    /// # Errors
-    /// What is wrong with the solid: see [`SolidError`].
-    pub fn gradients(&self, points: &[DVec3]) -> Result<Vec<DVec3>, SolidError> {
-        let programs = compiled(self)?;
-        Ok(points.iter().map(|p| programs.field.gradient(*p).1).collect())
     }
 
     /// A sound range of the field over a box: every value in it lies in the interval. The
@@ -220,43 +188,5 @@ impl Solid {
     /// ```
     pub fn owner(&self, p: impl Into<DVec3>) -> Result<Owner, SolidError> {
         Ok(compiled(self)?.surface.owner(p))
-    }
-}
-
-/// The same questions about many boxes, rays or points: the answers in their order.
-impl Solid {
-    /// [`range`](Solid::range) over many boxes.
-    ///
-    /// # Errors
-    /// What is wrong with the solid: see [`SolidError`].
-    pub fn ranges(&self, regions: &[Bounds]) -> Result<Vec<Interval>, SolidError> {
-        regions.iter().map(|region| self.range(region)).collect()
-    }
-
-    /// [`raycast`](Solid::raycast) along many rays, each an origin and a direction. On the threads
-    /// of a run, which may be cancelled: [`raycast_all_with`](Solid::raycast_all_with).
-    ///
-    /// # Errors
-    /// What is wrong with the solid: see [`SolidError`].
-    pub fn raycast_all(&self, rays: &[(DVec3, DVec3)]) -> Result<Vec<Option<Hit>>, SolidError> {
-        rays.iter().map(|(origin, direction)| self.raycast(*origin, *direction)).collect()
-    }
-
-    /// [`closest_surface_point`](Solid::closest_surface_point) to many points. On the threads of a
-    /// run, which may be cancelled:
-    /// [`closest_surface_points_with`](Solid::closest_surface_points_with).
-    ///
-    /// # Errors
-    /// What is wrong with the solid; [`SolidError::Unbounded`] if it has no finite box.
-    pub fn closest_surface_points(&self, points: &[DVec3]) -> Result<Vec<Option<DVec3>>, SolidError> {
-        points.iter().map(|p| self.closest_surface_point(*p)).collect()
-    }
-
-    /// [`owner`](Solid::owner) at many points.
-    ///
-    /// # Errors
-    /// What is wrong with the solid: see [`SolidError`].
-    pub fn owners(&self, points: &[DVec3]) -> Result<Vec<Owner>, SolidError> {
-        points.iter().map(|p| self.owner(*p)).collect()
     }
 }

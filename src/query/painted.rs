@@ -2,9 +2,11 @@
 
 use glam::DVec3;
 
-use crate::distance::compiled;
+use super::many::never_cancelled;
+use super::prepare::PrepareError;
+use crate::distance::compiled_with;
 use crate::mesh::{corner_colors, each_triangle};
-use crate::{Cancelled, Mesh, Paint, Run, Solid, SolidError};
+use crate::{Mesh, Paint, Run, Solid, SolidError};
 
 impl Mesh {
     /// The same mesh with the [paint](Solid::paint) of the solid that it was made from: an owner
@@ -27,22 +29,30 @@ impl Mesh {
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].
     pub fn painted(self, solid: &Solid, unpainted: Paint) -> Result<Mesh, SolidError> {
-        let program = compiled(solid)?.surface.clone();
-        let palette = solid.palette()?;
-        let run = Run::default();
-        let owner = |_, triangle| program.deciding_owner(self.corners(triangle).into_iter().sum::<DVec3>() / 3.0);
-        let owners = match self.owners() {
-            Some(owners) => Ok(owners.to_vec()),
-            None => each_triangle(&self, &run, owner),
-        };
-        let painted = owners.and_then(|owners| {
-            let colors = corner_colors(&self, &palette, &owners, unpainted, &run)?;
-            Ok(self.with_owners(owners).and_then(|mesh| mesh.with_corner_colors(colors)))
-        });
-        match painted {
-            Ok(Ok(mesh)) => Ok(mesh),
-            Ok(Err(_)) => unreachable!("one for each triangle"),
-            Err(Cancelled) => unreachable!("nobody has the token"),
-        }
+        never_cancelled(self.painted_with(solid, unpainted, &Run::default()))
+    }
+
+    /// [`painted`](Mesh::painted) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    /// What is wrong with the solid, or that the work was cancelled.
+    pub fn painted_with(self, solid: &Solid, unpainted: Paint, run: &Run) -> Result<Mesh, PrepareError> {
+        let run = run.stage(0.0, 1.0);
+        let [to_compile, to_own, to_paint] = run.stages([0.1, 0.6, 0.3]);
+        let (owners, colors) = run.install(|| {
+            let programs = compiled_with(solid, &to_compile)?;
+            let program = &programs.surface;
+            let owner = |_, triangle| program.deciding_owner(self.corners(triangle).into_iter().sum::<DVec3>() / 3.0);
+            let owners = match self.owners() {
+                Some(owners) => owners.to_vec(),
+                None => each_triangle(&self, &to_own, owner)?,
+            };
+            let colors = corner_colors(&self, &programs.palette, &owners, unpainted, &to_paint)?;
+            Ok::<_, PrepareError>((owners, colors))
+        })?;
+        let painted = self.with_owners(owners).and_then(|mesh| mesh.with_corner_colors(colors));
+        let Ok(painted) = painted else { unreachable!("one for each triangle") };
+        run.report(1.0);
+        Ok(painted)
     }
 }

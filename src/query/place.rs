@@ -60,13 +60,26 @@ impl Solid {
     /// used, and so is the result where the solid itself is at fault. The box is
     /// [`bounds`](Solid::bounds): where that is larger than the solid, as behind deformations, the
     /// solid hovers.
+    ///
+    /// The solid is compiled for its box, which takes long where it is large or has much to measure.
+    /// [Prepare](Solid::prepare) it first to do that on a [`Run`](crate::Run) that tells how far it
+    /// is and may be cancelled: what is prepared has its box, and moving it takes no time.
+    ///
+    /// ```
+    /// use rvachev::{Run, Solid, rad};
+    ///
+    /// let shell = Solid::cuboid([2.0, 2.0, 4.0]).twist(rad(0.25)).shell(0.25);
+    /// shell.prepare(&Run { threads: 2, ..Run::default() })?;
+    /// assert!(shell.on_ground().bounds()?.min.z.abs() < 1e-9);
+    /// # Ok::<(), rvachev::error::PrepareError>(())
+    /// ```
     #[must_use]
     pub fn on_ground(&self) -> Solid {
         self.placed("on_ground", |bounds| DVec3::new(0.0, 0.0, -bounds.min.z))
     }
 
-    /// Moved so that the middle of its box is the origin. What is refused: see
-    /// [`on_ground`](Solid::on_ground).
+    /// Moved so that the middle of its box is the origin. What is refused, and how long it takes:
+    /// see [`on_ground`](Solid::on_ground).
     ///
     /// ```
     /// use rvachev::Solid;
@@ -84,7 +97,7 @@ impl Solid {
     /// box. Both faces are across the same axis: two that are not are refused when the result is
     /// first used, as solids [without a box](Solid::on_ground) are. What is wrong with the other
     /// solid is told as a box that it has not; an empty solid stays empty, whatever it is aligned
-    /// with.
+    /// with. Both solids are compiled for their boxes: see [`on_ground`](Solid::on_ground).
     ///
     /// ```
     /// use rvachev::{Face, Solid};

@@ -13,13 +13,14 @@
 
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
+use rvachev_num::Meter;
 
 use super::contour::aside;
 use super::settings::{RenderError, check_memory, check_size, setting};
-use crate::distance::compiled;
-use crate::eval::{Evaluator, Program, Tape};
+use crate::distance::compiled_with;
+use crate::eval::Program;
 use crate::geom::{to_byte, to_linear};
-use crate::{Bounds, Image, Plane, PlaneBounds, Solid};
+use crate::{Bounds, Cancelled, Image, Plane, PlaneBounds, Run, Solid};
 
 /// How far the region of a slice goes beyond the solid, in proportion to its size.
 const MARGIN: f64 = 0.08;
@@ -89,8 +90,7 @@ impl Solid {
     /// What is wrong with the solid or the plane; an unbounded solid wants
     /// [`slice_within`](Solid::slice_within).
     pub fn slice(&self, plane: &Plane) -> Result<Slice, RenderError> {
-        let bounds = self.finite_bounds()?;
-        self.slice_within(plane, seen(&bounds, plane))
+        self.slice_with(plane, None, &Run::default())
     }
 
     /// The solid cut by a plane, within a rectangle of the plane's coordinates.
@@ -98,14 +98,42 @@ impl Solid {
     /// # Errors
     /// What is wrong with the solid, the plane or the rectangle.
     pub fn slice_within(&self, plane: &Plane, region: PlaneBounds) -> Result<Slice, RenderError> {
-        let programs = compiled(self)?;
+        self.slice_with(plane, Some(region), &Run::default())
+    }
+
+    /// The solid cut by a plane, within a rectangle of the plane's coordinates or over all of it,
+    /// with a cancel token and a progress sink: the solid is compiled if it has not been.
+    ///
+    /// ```
+    /// use rvachev::{Plane, Run, SliceSettings, Solid};
+    ///
+    /// let run = Run { threads: 2, ..Run::default() };
+    /// let slice = Solid::sphere(1.0).slice_with(&Plane::xy(0.0), None, &run)?;
+    /// let picture = slice.picture_with(&SliceSettings { width: 40, ..SliceSettings::default() }, &run)?;
+    /// assert_eq!([picture.width(), picture.height()], [40, 40]);
+    /// # Ok::<(), rvachev::error::RenderError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What is wrong with the solid, the plane or the rectangle, or that the work was cancelled; an
+    /// unbounded solid wants a rectangle.
+    pub fn slice_with(&self, plane: &Plane, region: Option<PlaneBounds>, run: &Run) -> Result<Slice, RenderError> {
+        let run = run.stage(0.0, 1.0);
+        let programs = run.install(|| compiled_with(self, &run))?;
+        let region = match region {
+            Some(region) => region,
+            None => seen(&self.finite_bounds()?, plane),
+        };
         if !plane.is_finite() {
-            return Err(setting("plane", format!("{plane:?}"), "finite, with a normal that is not 0"));
+            let value = format!("through {} across {}", plane.origin(), plane.normal());
+            return Err(setting("plane", value, "finite, with a normal that is not 0"));
         }
         let size = region.max - region.min;
         if !(size.is_finite() && size.min_element() > 0.0) {
-            return Err(setting("region", format!("{region:?}"), "finite, with min below max along both axes"));
+            let value = format!("{} to {}", region.min, region.max);
+            return Err(setting("region", value, "finite, with min below max along both axes"));
         }
+        run.report(1.0);
         Ok(Slice { field: programs.field.clone(), surface: programs.surface.clone(), plane: *plane, region })
     }
 }
@@ -136,11 +164,22 @@ impl Slice {
     /// If the width, or the height that follows from it, is not from 1 to 65 535, or both make more
     /// pixels than fit into memory.
     pub fn values(&self, width: u32) -> Result<Image<f64>, RenderError> {
-        self.values_on(&self.plane, width)
+        self.values_with(width, &Run::default())
+    }
+
+    /// [`values`](Slice::values) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    /// As for [`values`](Slice::values), or that the work was cancelled.
+    pub fn values_with(&self, width: u32, run: &Run) -> Result<Image<f64>, RenderError> {
+        let run = run.stage(0.0, 1.0);
+        let values = run.install(|| self.values_on(&self.plane, width, &run))?;
+        run.report(1.0);
+        Ok(values)
     }
 
     /// The same on a plane beside the slice's.
-    fn values_on(&self, plane: &Plane, width: u32) -> Result<Image<f64>, RenderError> {
+    fn values_on(&self, plane: &Plane, width: u32, run: &Run) -> Result<Image<f64>, RenderError> {
         let height = self.height(width).min(f64::from(u32::MAX)) as u32;
         check_size(width, height)?;
         check_memory(width, height)?;
@@ -148,7 +187,8 @@ impl Slice {
         let middle = |i: u32, count: u32| (f64::from(i) + 0.5) / f64::from(count);
         let columns: Vec<f64> = (0..width).map(|i| min.x + (max.x - min.x) * middle(i, width)).collect();
         let rows: Vec<f64> = (0..height).map(|j| max.y - (max.y - min.y) * middle(j, height)).collect();
-        Ok(Image::new(width, height, sampled(&self.field, plane, &columns, &rows))?)
+        let point = |i: usize| plane.point(DVec2::new(columns[i % columns.len()], rows[i / columns.len()]));
+        Ok(Image::new(width, height, self.field.sampled(columns.len() * rows.len(), point, run)?)?)
     }
 
     /// The field as a picture: inside and outside tinted, isolines, and the surface as a line.
@@ -158,13 +198,29 @@ impl Slice {
     /// # Errors
     /// If a setting is out of its range.
     pub fn picture(&self, settings: &SliceSettings) -> Result<Image, RenderError> {
+        self.picture_with(settings, &Run::default())
+    }
+
+    /// [`picture`](Slice::picture) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    /// If a setting is out of its range, or the work was cancelled.
+    pub fn picture_with(&self, settings: &SliceSettings, run: &Run) -> Result<Image, RenderError> {
+        let run = run.stage(0.0, 1.0);
+        let picture = run.install(|| self.drawn(settings, &run))?;
+        run.report(1.0);
+        Ok(picture)
+    }
+
+    fn drawn(&self, settings: &SliceSettings, run: &Run) -> Result<Image, RenderError> {
         if let Isolines::Every(step) = settings.isolines
             && !(step > 0.0 && step.is_finite())
         {
             return Err(setting("isolines", step, "finite and above 0"));
         }
         let above = self.plane.moved_by(aside(&self.plane, self.region, 0.0));
-        let values = self.values_on(&above, settings.width)?;
+        let [to_value, to_draw] = run.stages([0.8, 0.2]);
+        let values = self.values_on(&above, settings.width, &to_value)?;
         let (width, height) = (values.width() as usize, values.height() as usize);
         let v = values.pixels();
         let size = (self.region.max - self.region.min).max_element();
@@ -179,50 +235,44 @@ impl Slice {
         let scale = (values.width() as f32 / 800.0).clamp(0.5, 4.0);
         let linear = |color: [u8; 3]| Vec3::from_array(color.map(|c| to_linear(f32::from(c) / 255.0)));
         let (inside, outside) = (linear(settings.inside), linear(settings.outside));
-        let pixels: Vec<[u8; 4]> = (0..width * height)
-            .into_par_iter()
-            .map(|at| {
-                let (x, y) = (at % width, at / width);
-                // The steeper side of each axis: a kink does not thin a line.
-                let slope = |a: Option<usize>, b: Option<usize>| {
-                    let change = |o: Option<usize>| o.map_or(0.0, |o| (v[o] - v[at]).abs());
-                    change(a).max(change(b))
-                };
-                let across = slope((x > 0).then(|| at - 1), (x + 1 < width).then(|| at + 1));
-                let down = slope((y > 0).then(|| at - width), (y + 1 < height).then(|| at + width));
-                let change = across.hypot(down).max(1e-300);
-                let ink = |away: f64, half: f32| (half + 0.5 - (away / change) as f32).clamp(0.0, 1.0);
-                let tint = if v[at] > 0.0 { inside } else { outside };
-                // Pale at the surface, deeper away from it.
-                let deep = (v[at].abs() / (v[at].abs() + depth)) as f32;
-                let mut color = Vec3::splat(0.94).lerp(tint, 0.22 + 0.78 * deep);
-                if let Some(step) = step {
-                    let nearest = (v[at] / step).round();
-                    let fifth = nearest % 5.0 == 0.0;
-                    // Where lines would run together they fade into a tone.
-                    let room = (step / change / 4.0).min(1.0) as f32;
-                    let strength = room * if fifth { 0.55 } else { 0.30 };
-                    color = color.lerp(tint * 0.12, strength * ink((v[at] - nearest * step).abs(), 0.35 * scale));
-                }
-                color = color.lerp(Vec3::new(0.008, 0.012, 0.02), ink(v[at].abs(), 1.0 * scale));
-                let [r, g, b] = color.to_array().map(to_byte);
-                [r, g, b, 255]
-            })
-            .collect();
+        let drawn = |at: usize| {
+            let (x, y) = (at % width, at / width);
+            // The steeper side of each axis: a kink does not thin a line.
+            let slope = |a: Option<usize>, b: Option<usize>| {
+                let change = |o: Option<usize>| o.map_or(0.0, |o| (v[o] - v[at]).abs());
+                change(a).max(change(b))
+            };
+            let across = slope((x > 0).then(|| at - 1), (x + 1 < width).then(|| at + 1));
+            let down = slope((y > 0).then(|| at - width), (y + 1 < height).then(|| at + width));
+            let change = across.hypot(down).max(1e-300);
+            let ink = |away: f64, half: f32| (half + 0.5 - (away / change) as f32).clamp(0.0, 1.0);
+            let tint = if v[at] > 0.0 { inside } else { outside };
+            // Pale at the surface, deeper away from it.
+            let deep = (v[at].abs() / (v[at].abs() + depth)) as f32;
+            let mut color = Vec3::splat(0.94).lerp(tint, 0.22 + 0.78 * deep);
+            if let Some(step) = step {
+                let nearest = (v[at] / step).round();
+                let fifth = nearest % 5.0 == 0.0;
+                // Where lines would run together they fade into a tone.
+                let room = (step / change / 4.0).min(1.0) as f32;
+                let strength = room * if fifth { 0.55 } else { 0.30 };
+                color = color.lerp(tint * 0.12, strength * ink((v[at] - nearest * step).abs(), 0.35 * scale));
+            }
+            color = color.lerp(Vec3::new(0.008, 0.012, 0.02), ink(v[at].abs(), 1.0 * scale));
+            let [r, g, b] = color.to_array().map(to_byte);
+            [r, g, b, 255]
+        };
+        let meter = Meter::new(&to_draw, height);
+        let mut pixels = vec![[0; 4]; width * height];
+        pixels.par_chunks_mut(width).enumerate().try_for_each(|(row, pixels)| {
+            meter.step()?;
+            for (x, pixel) in pixels.iter_mut().enumerate() {
+                *pixel = drawn(row * width + x);
+            }
+            Ok::<(), Cancelled>(())
+        })?;
         Ok(Image::new(values.width(), values.height(), pixels)?)
     }
-}
-
-/// Values of a program at the points of a grid of a plane, row by row.
-fn sampled(program: &Program, plane: &Plane, columns: &[f64], rows: &[f64]) -> Vec<f64> {
-    let tape = Tape::new(program, &Bounds::new(glam::DVec3::ZERO, glam::DVec3::ZERO));
-    let mut values = vec![0.0; columns.len() * rows.len()];
-    values.par_chunks_mut(columns.len()).zip(rows).for_each_init(Evaluator::new, |evaluator, (values, v)| {
-        let points: Vec<glam::DVec3> = columns.iter().map(|u| plane.point(DVec2::new(*u, *v))).collect();
-        let at = |axis: usize| -> Vec<f64> { points.iter().map(|p| p[axis]).collect() };
-        evaluator.shortest_values_f64(&tape, [&at(0), &at(1), &at(2)], values);
-    });
-    values
 }
 
 /// The rectangle of a plane that a box is seen in, with a small margin.
@@ -237,8 +287,8 @@ pub(super) fn seen(bounds: &Bounds, plane: &Plane) -> PlaneBounds {
 
 /// From the least to the greatest value, but no more than what a distance changes by.
 fn span(values: &[f64], size: f64) -> f64 {
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let low = values.par_iter().copied().reduce(|| f64::INFINITY, f64::min);
+    let high = values.par_iter().copied().reduce(|| f64::NEG_INFINITY, f64::max);
     let span = (high - low).min(2.0 * size);
     if span > 0.0 { span } else { size }
 }

@@ -88,7 +88,8 @@ impl Solid {
         let opaque = |corners: &[[u8; 4]; 3]| corners.map(|[r, g, b, _]| [r, g, b]);
         let colors = colors.map(|colors| colors.iter().map(opaque).collect());
         let owners = mesh.owners().filter(|_| settings.owners);
-        let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), colors, owners, run)?;
+        let run = run.stage(0.0, 1.0);
+        let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), colors, owners, &run)?;
         let leaf: Arc<dyn AnyField> = Arc::new(leaf);
         Ok(Solid::from_node(Node::Leaf(leaf)))
     }

@@ -290,7 +290,8 @@ impl Profile {
     ///
     /// The profile may be higher than the pitch, so that turns run into one another, up to
     /// twice the pitch. Up to half the pitch only the nearest turn is evaluated; beyond, the
-    /// turns above and below it as well.
+    /// turns above and below it as well. The profile is compiled to know its height:
+    /// [prepare](Profile::prepare) it first where that takes long.
     ///
     /// The parameters and their ranges: [`Helix`].
     ///

@@ -13,6 +13,7 @@ mod shapes;
 mod shrink;
 mod text;
 
+use std::cell::Cell;
 use std::fs;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -20,7 +21,7 @@ use std::path::Path;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use rvachev::{CancelToken, Progress, Run, Solid, error::PrepareError};
+use rvachev::{CancelToken, Progress, Run, Solid, SolidError, error::PrepareError};
 
 /// What is wrong with a solid.
 #[derive(Clone, Debug)]
@@ -46,10 +47,34 @@ fn caught(job: impl FnOnce() -> Result<(), Fault>) -> Result<(), Fault> {
     })
 }
 
+/// What came of the solids of a run.
+#[derive(Default)]
+struct Tally {
+    solids: u32,
+    /// Refused with one of the errors that are documented.
+    refused: u32,
+    /// Not compiled, or not asked all, in the time that one has.
+    slow: u32,
+    wrong: Vec<String>,
+}
+
+/// The parts of many solids that may be refused, and be slow.
+#[derive(Clone, Copy)]
+pub struct Most {
+    pub refused: f64,
+    pub slow: f64,
+}
+
+const NUMBERS: Most = Most { refused: 0.1, slow: 0.01 };
+const SHAPES: Most = Most { refused: 0.1, slow: 0.08 };
+
+/// So many are many.
+const MANY: u32 = 400;
+
 /// Makes a solid of each seed and checks it. Fails at the end, with a minimal program for each of
-/// the first faults.
-pub fn run(seeds: Range<u64>, make: fn(u64) -> Option<Solid>, check: Check) {
-    let (mut wrong, mut solids, mut slow, start) = (Vec::new(), 0, 0, Instant::now());
+/// the first faults, or where too many are refused or slow; at once where one does not end.
+pub fn run(seeds: Range<u64>, make: fn(u64) -> Option<Solid>, check: Check, most: Most) {
+    let (mut tally, start) = (Tally::default(), Instant::now());
     let watch = watch();
     for seed in seeds.clone() {
         let mut solid = None;
@@ -58,29 +83,88 @@ pub fn run(seeds: Range<u64>, make: fn(u64) -> Option<Solid>, check: Check) {
             solid = make(seed);
             let Some(solid) = &solid else { return Ok(()) };
             drop(watch.send(format!("{seed}: {}", text::written(&solid.into()))));
-            if matches!(solid.prepare(&short()), Err(PrepareError::Cancelled(_))) {
-                slow += 1;
-                return Ok(());
+            match solid.prepare(&short()) {
+                Err(PrepareError::Cancelled(_)) => tally.slow += 1,
+                Err(PrepareError::Solid(error)) => {
+                    tally.refused += 1;
+                    refusal(solid, &error)?;
+                }
+                Err(error) => fault("refusal", false, || error.to_string())?,
+                Ok(_) => {
+                    let _clock = Clock::start();
+                    check(solid)?;
+                    tally.slow += u32::from(is_late());
+                }
             }
-            check(solid)
+            Ok(())
         });
-        solids += u32::from(solid.is_some());
+        tally.solids += u32::from(solid.is_some());
         if let Err(fault) = result {
             let least = solid.map(|solid| least(&solid, check, &fault));
             let line = format!("{seed}: {}: {}\n    {}", fault.check, fault.text, least.unwrap_or_default());
             println!("{line}");
-            wrong.push(line);
+            tally.wrong.push(line);
         }
         if (seed + 1 - seeds.start).is_multiple_of(1000) {
-            println!("{}..{} done, {} wrong, {:?}", seeds.start, seed + 1, wrong.len(), start.elapsed());
+            println!("{}..{} done, {} wrong, {:?}", seeds.start, seed + 1, tally.wrong.len(), start.elapsed());
         }
     }
+    let Tally { solids, refused, slow, wrong } = tally;
     println!(
-        "{solids} solids of seeds {seeds:?}, {slow} too slow to compile, {} wrong, {:?}",
+        "{solids} solids of seeds {seeds:?}, {refused} refused, {slow} slow, {} wrong, {:?}",
         wrong.len(),
         start.elapsed()
     );
     assert!(wrong.is_empty(), "{} of {solids}:\n{}", wrong.len(), wrong.join("\n"));
+    let is_few = |some: u32, part: f64| solids < MANY || f64::from(some) <= part * f64::from(solids);
+    assert!(is_few(refused, most.refused) && is_few(slow, most.slow), "{refused} refused and {slow} slow of {solids}");
+}
+
+/// A refusal is one of the solid, tells where and what is wrong, and is the same whoever asks.
+fn refusal(solid: &Solid, error: &SolidError) -> Result<(), Fault> {
+    let text = error.to_string();
+    let is_told = match error {
+        SolidError::Parameter { path, .. } | SolidError::NoGauge { path, .. } | SolidError::TooDeep { path, .. } => {
+            !path.is_empty() && text.contains("allowed")
+        }
+        SolidError::Surface { reason } => !reason.contains("internal"),
+        SolidError::Unbounded { path } => !path.is_empty(),
+        SolidError::EmptyJoin { .. } | SolidError::TooLarge { .. } => true,
+        _ => false,
+    };
+    fault("refusal", is_told, || format!("{error:?}: {text}"))?;
+    // By their texts: numbers that are NaN are not equal.
+    let all = [solid.value([0.1; 3]).err(), solid.bounds().err(), solid.contains_all(&[]).err()];
+    let is_same = |other: &Option<SolidError>| other.as_ref().is_some_and(|other| other.to_string() == text);
+    fault("refusal", all.iter().all(is_same), || format!("{error:?}, else {all:?}"))
+}
+
+/// So long one solid is asked; what is left then is not.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+thread_local! {
+    static CLOCK: Cell<Option<Instant>> = const { Cell::new(None) };
+}
+
+/// The time that the questions to one solid have. Others, as of minimal programs, have no end.
+struct Clock;
+
+impl Clock {
+    fn start() -> Clock {
+        CLOCK.set(Some(Instant::now() + PATIENCE));
+        Clock
+    }
+}
+
+impl Drop for Clock {
+    fn drop(&mut self) {
+        CLOCK.set(None);
+    }
+}
+
+/// Whether the solid that is checked has been asked for long enough.
+pub fn is_late() -> bool {
+    CLOCK.get().is_some_and(|end| Instant::now() > end)
 }
 
 /// A run that ends after some seconds: what takes long is for other tests.
@@ -88,26 +172,33 @@ pub fn short() -> Run {
     let cancel = CancelToken::new();
     let (token, start) = (cancel.clone(), Instant::now());
     let progress = Progress::new(move |_| {
-        if start.elapsed().as_secs() > 4 {
+        if start.elapsed() > PATIENCE {
             token.cancel();
         }
     });
     Run { cancel, progress: Some(progress), ..Run::default() }
 }
 
-/// Takes what is begun, and tells what takes long.
+/// What takes longer than this hangs: the run fails.
+const HANGS: Duration = Duration::from_secs(300);
+
+/// Takes what is begun, tells what takes long, and ends the process where something hangs.
 fn watch() -> Sender<String> {
+    const LONG: Duration = Duration::from_secs(20);
     let (watch, begun) = channel::<String>();
     std::thread::spawn(move || {
-        let mut now = String::new();
+        let (mut now, mut patience) = (String::new(), LONG);
         loop {
-            match begun.recv_timeout(Duration::from_secs(8)) {
-                Ok(next) => now = next,
+            match begun.recv_timeout(patience) {
+                Ok(next) => (now, patience) = (next, LONG),
                 Err(RecvTimeoutError::Disconnected) => return,
-                Err(RecvTimeoutError::Timeout) => {
+                Err(RecvTimeoutError::Timeout) if patience == LONG => {
                     println!("takes long: {now}");
-                    let Ok(next) = begun.recv() else { return };
-                    now = next;
+                    patience = HANGS;
+                }
+                Err(RecvTimeoutError::Timeout) => {
+                    println!("does not end: {now}");
+                    std::process::exit(101);
                 }
             }
         }
@@ -132,37 +223,37 @@ pub fn seeds(variable: &str, otherwise: Range<u64>) -> Range<u64> {
 
 #[test]
 fn numbers_of_random_solids_agree() {
-    run(0..200, make::solid, numbers::check);
+    run(0..200, make::solid, numbers::check, NUMBERS);
 }
 
 #[test]
 fn shapes_of_random_solids_agree() {
-    run(0..12, make::solid, shapes::check);
+    run(0..12, make::solid, shapes::check, SHAPES);
 }
 
 #[cfg(feature = "import")]
 #[test]
 fn files_of_random_solids_come_back() {
-    run(0..20, make::solid, files::check);
+    run(0..20, make::solid, files::check, SHAPES);
 }
 
 #[test]
 #[ignore = "a million solids take hours: BATTERY_SEEDS=0..1000 chooses"]
 fn numbers_of_a_million_solids_agree() {
-    run(seeds("BATTERY_SEEDS", 0..1_000_000), make::solid, numbers::check);
+    run(seeds("BATTERY_SEEDS", 0..1_000_000), make::solid, numbers::check, NUMBERS);
 }
 
 #[test]
 #[ignore = "takes hours: BATTERY_SEEDS=0..1000 chooses"]
 fn shapes_of_twenty_thousand_solids_agree() {
-    run(seeds("BATTERY_SEEDS", 0..20_000), make::solid, shapes::check);
+    run(seeds("BATTERY_SEEDS", 0..20_000), make::solid, shapes::check, SHAPES);
 }
 
 #[cfg(feature = "import")]
 #[test]
 #[ignore = "takes many minutes: BATTERY_SEEDS=0..1000 chooses"]
 fn files_of_two_thousand_solids_come_back() {
-    run(seeds("BATTERY_SEEDS", 0..2000), make::solid, files::check);
+    run(seeds("BATTERY_SEEDS", 0..2000), make::solid, files::check, SHAPES);
 }
 
 /// What is wrong with the solids of a file of the corpus, a line each: the name of a check, a

@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rvachev::{
-    CellSize, Clearance, Helix, MeshSettings, Prism, Profile, RFunction, Run, Solid, deg, error::PrepareError, rad,
+    CellSize, Clearance, Helix, MeshSettings, Prism, Profile, RFunction, Run, Solid, SolidError, deg,
+    error::PrepareError, rad,
 };
 
 fn clearance(a: &Solid, b: &Solid) -> Clearance {
@@ -87,6 +88,14 @@ fn nothing_has_no_clearance_and_faults_are_told() {
     let ball = Solid::sphere(1.0);
     let empty = ball.clone() & ball.translate([5.0, 0.0, 0.0]);
     assert_eq!(ball.clearance(&empty, &Run::default()).unwrap(), None);
+    let block = Solid::cuboid([1.0; 3]).twist(deg(20.0));
+    assert_eq!(ball.clearance(&(&block - &block), &Run::default()).unwrap(), None);
+    // What is too thin to be measured is no empty solid.
+    for thin in [[1e-6, 1e-6, 10.0], [1e-8, 10.0, 10.0]] {
+        let error = Solid::cuboid(thin).clearance(&ball.translate([30.0, 0.0, 0.0]), &Run::default()).unwrap_err();
+        assert!(error.to_string().contains("thicker"), "{error}");
+        assert!(matches!(error, PrepareError::Solid(SolidError::Surface { .. })));
+    }
     let endless = Solid::half_space([0.0, 0.0, 1.0], -5.0);
     assert!(matches!(ball.clearance(&endless, &Run::default()), Err(PrepareError::Solid(_))));
     let run = Run::default();

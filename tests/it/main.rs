@@ -31,6 +31,7 @@ mod lattices;
 mod laws;
 mod length_ranges;
 mod lengths;
+mod many;
 mod maps;
 mod measure;
 mod mesh;

@@ -3,7 +3,8 @@
 use std::sync::{Arc, Mutex};
 
 use rvachev::{
-    Camera, CellSize, ContourSettings, MeshSettings, Plane, Progress, Quality, RenderSettings, Run, Solid, Style, deg,
+    Camera, CellSize, ContourSettings, Mesh, MeshSettings, MeshSolid, Plane, Progress, Quality, RenderSettings, Run,
+    Solid, Style, deg,
 };
 
 /// A run, and what it reports.
@@ -81,4 +82,26 @@ fn turntables_tell_how_far_they_are() {
         scene.render_with(&camera.orbit(deg(360.0 * part(frame)), deg(0.0)), &settings, &run).unwrap();
     }
     flows("turntable", &seen, 150, 0.03);
+}
+
+#[test]
+fn clearances_and_imports_tell_how_far_they_are() {
+    // An even gap, an overlap, and what crosses.
+    let bore = Solid::cuboid([12.0, 12.0, 8.0]) - Solid::cylinder(3.1, 10.0);
+    for (name, by) in [("gap", 0.0), ("overlap", 0.4)] {
+        let (run, seen) = recorded();
+        Solid::cylinder(3.0, 9.0).translate([by, 0.0, 0.0]).clearance(&bore, &run).unwrap();
+        flows(name, &seen, 40, 0.25);
+    }
+    // A sphere with a hole, whose rim is closed; one run for two jobs.
+    let mesh = Solid::sphere(1.0).mesh(&MeshSettings { cell: CellSize::Length(0.02), ..MeshSettings::default() });
+    let mesh = mesh.unwrap();
+    let open = mesh.triangles().iter().copied().filter(|t| mesh.positions()[t[0] as usize].z < 0.7).collect();
+    let open = Mesh::new(mesh.positions().to_vec(), open).unwrap();
+    let (run, seen) = recorded();
+    for _ in 0..2 {
+        seen.lock().unwrap().clear();
+        Solid::from_mesh_with(&open, MeshSolid::default(), &run).unwrap();
+        flows("import", &seen, 20, 0.25);
+    }
 }

@@ -1,12 +1,10 @@
 //! Questions to a solid, against closed forms.
 
 use std::f64::consts::{FRAC_PI_4, PI};
-use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, CancelToken, Profile, Progress, RFunction, Run, Solid, Superellipsoid, deg,
-    error::PrepareError,
+    Bounds, Profile, RFunction, Solid, Superellipsoid, deg,
     program::{Evaluator, Gradients, Tape},
     rad,
 };
@@ -564,31 +562,4 @@ fn points_beyond_all_numbers_are_outside() {
             }
         }
     }
-}
-
-#[test]
-fn many_questions_are_those_of_one_and_can_be_cancelled() {
-    let bar = Solid::superellipsoid([1.0, 0.8, 2.0], 0.4, 0.6).twist(rad(0.3));
-    let mut random = Random::new(1510);
-    let points: Vec<DVec3> = (0..40).map(|_| random.vector(-3.0, 3.0)).collect();
-    let rays: Vec<(DVec3, DVec3)> = points.iter().map(|p| (*p, -p.normalize())).collect();
-    let told = Arc::new(Mutex::new(Vec::new()));
-    let progress = Progress::new({
-        let told = Arc::clone(&told);
-        move |fraction| told.lock().unwrap().push(fraction)
-    });
-    let run = Run { threads: 2, progress: Some(progress), ..Run::default() };
-    assert_eq!(bar.closest_surface_points_with(&points, &run).unwrap(), bar.closest_surface_points(&points).unwrap());
-    assert_eq!(bar.raycast_all_with(&rays, &Run::default()).unwrap(), bar.raycast_all(&rays).unwrap());
-    let told = told.lock().unwrap();
-    assert!(told.len() > 3 && told.is_sorted() && told.last() == Some(&1.0), "{told:?}");
-    let cancel = CancelToken::new();
-    cancel.cancel();
-    let run = Run { cancel, ..Run::default() };
-    let ball = Solid::sphere(1.0).twist(rad(0.1));
-    assert!(matches!(ball.closest_surface_points_with(&points, &run), Err(PrepareError::Cancelled(_))));
-    assert!(matches!(ball.raycast_all_with(&rays, &run), Err(PrepareError::Cancelled(_))));
-    let column = Profile::circle(1.0).column();
-    let error = column.closest_surface_points_with(&points, &Run::default()).unwrap_err();
-    assert_eq!(error, PrepareError::Solid(column.closest_surface_points(&points).unwrap_err()));
 }

@@ -1,7 +1,7 @@
 //! Solids of very many nodes: deep chains, shared parts, long joins.
 
 use glam::DVec3;
-use rvachev::{Bounds, CellSize, MeshSettings, RFunction, Solid, Superellipsoid, program::Region};
+use rvachev::{Bounds, CellSize, MeshSettings, RFunction, Solid, Superellipsoid, program::Region, rad};
 
 use crate::support::{RULES, Random, lanes32, value};
 
@@ -86,6 +86,34 @@ fn a_chain_of_translations() {
         let centre = step * DEEP as f64;
         walks(chain, centre, centre + 2.0 * DVec3::X, 1);
     });
+}
+
+/// A bar that is deformed in so many steps is as one that is deformed at once.
+fn deformed_in_steps(count: u32) {
+    let bar = Solid::cuboid([1.0, 0.8, 2.0]);
+    let part = 1.0 / f64::from(count);
+    let twists = (0..count).fold(bar.clone(), |bar, _| bar.twist(rad(0.3 * part)));
+    let longer = (0..count).fold(bar.clone(), |bar, _| bar.elongate([part, 0.0, 0.0]));
+    for (steps, at_once) in [(twists, bar.twist(rad(0.3))), (longer, bar.elongate([1.0, 0.0, 0.0]))] {
+        for p in [[0.1, 0.2, 0.9], [0.7, 0.3, -0.8], [-0.4, -0.39, 0.99]] {
+            let off = steps.value(p).unwrap() - at_once.value(p).unwrap();
+            assert!(off.abs() < 1e-9, "{off:e} at {p:?} in {count} steps");
+        }
+        let settings = MeshSettings { cell: CellSize::LongestSide(16), ..MeshSettings::default() };
+        let [mesh, other] = [&steps, &at_once].map(|solid| solid.mesh(&settings).unwrap());
+        assert!(mesh.check().is_sound() && (mesh.volume() / other.volume() - 1.0).abs() < 0.01, "{}", mesh.volume());
+    }
+}
+
+#[test]
+fn a_chain_of_deformations_is_meshed() {
+    deformed_in_steps(500);
+}
+
+#[test]
+#[ignore = "takes some ten seconds"]
+fn a_chain_of_ten_thousand_deformations_is_meshed() {
+    deformed_in_steps(10_000);
 }
 
 #[test]

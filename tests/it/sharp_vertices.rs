@@ -1,8 +1,8 @@
 //! Vertices of meshes with sharp features are on the surface, and narrow sides between two creases
 //! are there.
 
-use glam::DVec3;
-use rvachev::{CellSize, Mesh, MeshSettings, Profile, Run, Solid, rad};
+use glam::{DQuat, DVec3, Vec3};
+use rvachev::{CellSize, Helix, Mesh, MeshSettings, Profile, Run, Solid, rad};
 
 /// How far a vertex may be off the surface, in cells.
 const OFF: f64 = 0.1;
@@ -53,18 +53,37 @@ fn a_side_narrower_than_a_cell_is_there() {
     }
 }
 
-/// A thread: a helical ridge with a flat crest narrower than a cell, on a core.
-fn thread(cell: f64) -> (Solid, f64) {
-    let profile = Profile::polygon([[8.0, -1.6], [10.0, -0.1], [10.0, 0.1], [8.0, 1.6]]);
+/// Ridges with a flat crest narrower than a cell, on a core.
+const RIDGE: [[f64; 2]; 4] = [[8.0, -1.6], [10.0, -0.1], [10.0, 0.1], [8.0, 1.6]];
+const CREST: f64 = 10.0;
+
+fn rings() -> Solid {
+    let profile = Profile::polygon(RIDGE);
     let rings = (0..4).map(|n| profile.revolve().translate(DVec3::Z * (4.0 * f64::from(n) - 6.0)));
-    (rings.fold(Solid::cylinder(8.5, 16.0), |all, ring| all | ring).rotate_x(rad(0.3)), cell)
+    rings.fold(Solid::cylinder(8.5, 16.0), |all, ring| all | ring)
+}
+
+fn thread(left_handed: bool) -> Solid {
+    let profile = Profile::polygon(RIDGE.map(|[x, y]| [x - 8.0, y]));
+    let helix = Helix { left_handed, ..Helix::new(8.0, 4.0, 3.0) };
+    profile.sweep_helix(&helix) | Solid::cylinder(8.5, 16.0)
 }
 
 #[test]
-fn crests_of_rings_do_not_stick_out() {
-    let (solid, cell) = thread(0.5);
-    let mesh = mesh(&solid, cell);
-    let (worst, count) = worst(&mesh, &solid, cell);
-    println!("worst {worst:.3}, {count} off of {}", mesh.positions().len());
-    assert!(count == 0, "{count} vertices are off by up to {worst} cells");
+fn crests_of_rings_and_threads_do_not_stick_out() {
+    for (name, upright) in [("rings", rings()), ("thread", thread(false)), ("left-handed thread", thread(true))] {
+        let solid = upright.rotate_x(rad(0.3));
+        let mesh = mesh(&solid, 0.5);
+        let (worst, count) = worst(&mesh, &solid, 0.5);
+        let from_axis = |p: &Vec3| radius(DQuat::from_rotation_x(-0.3) * p.as_dvec3());
+        let farthest = mesh.positions().iter().map(from_axis).fold(0.0, f64::max);
+        println!("{name}: worst {worst:.3}, {count} off of {}, up to {farthest:.3}", mesh.positions().len());
+        assert!(count == 0, "{name}: {count} vertices are off by up to {worst} cells");
+        assert!((farthest - CREST).abs() < 0.5 * OFF, "{name}: {farthest} from the axis");
+    }
+}
+
+/// How far a point is from the axis z.
+fn radius(p: DVec3) -> f64 {
+    p.truncate().length()
 }

@@ -120,9 +120,11 @@ fn errors() {
     assert!(message(slice.values(0).unwrap_err()).starts_with("width is 0"));
     let settings = SliceSettings { isolines: Isolines::Every(-1.0), ..SliceSettings::default() };
     assert!(message(slice.picture(&settings).unwrap_err()).starts_with("isolines is -1"));
-    assert!(message(ball.slice(&Plane::new(DVec3::ZERO, DVec3::ZERO)).unwrap_err()).starts_with("plane is"));
+    let across_nothing = message(ball.slice(&Plane::new(DVec3::ZERO, DVec3::ZERO)).unwrap_err());
+    assert!(across_nothing.starts_with("plane is through [0, 0, 0] across ["), "{across_nothing}");
     let flat = PlaneBounds { min: DVec2::ZERO, max: DVec2::X };
-    assert!(message(ball.slice_within(&Plane::xy(0.0), flat).unwrap_err()).starts_with("region is"));
+    let flat = message(ball.slice_within(&Plane::xy(0.0), flat).unwrap_err());
+    assert!(flat.starts_with("region is [0, 0] to [1, 0]; allowed: "), "{flat}");
     assert!(ball.complement().slice(&Plane::xy(0.0)).is_err());
     let nothing = ball.slice(&Plane::xy(5.0)).unwrap();
     assert!(nothing.contours(1e-3).unwrap().is_empty());

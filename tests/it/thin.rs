@@ -5,10 +5,11 @@ use std::f64::consts::PI;
 use glam::{DQuat, DVec2, DVec3};
 use rvachev::{
     Blend, Bounds, CancelToken, Cancelled, CellSize, Features, Helix, MeshSettings, MinimalSurface, Polygon, Profile,
-    Run, SheetLattice, Solid, ThinFeatures, ThinReport, deg, error::MeshingError,
+    Run, SheetLattice, Solid, ThinFeatures, ThinReport, deg, error::MeshingError, rad,
 };
 
 use super::models;
+use crate::support::Random;
 
 fn unresolved(solid: &Solid, cell: CellSize, bounds: Option<Bounds>) -> usize {
     let settings = MeshSettings { cell, bounds, ..MeshSettings::default() };
@@ -260,4 +261,22 @@ fn what_is_cut_off_or_empty_is_told_with_the_remedy() {
     let settings = MeshSettings { thin: ThinFeatures::Count, ..MeshSettings::default() };
     let warnings = Solid::cuboid([10.0, 10.0, 0.05]).mesh(&settings).unwrap().warnings();
     assert!(warnings.iter().any(|text| text.contains("cells of half the thickness, as `CellSize::")), "{warnings:?}");
+}
+
+/// A ball far from the axis of a twist is a thin lens, whose value changes by ten per length unit:
+/// that nodes are far from the surface by their values says little of the cells about them.
+#[test]
+fn what_deformations_make_thin_is_told() {
+    let mut random = Random::new(3);
+    for _ in 0..40 {
+        let at = [random.range(8.0, 12.0), random.range(-0.2, 0.2), random.range(-0.2, 0.2)];
+        let lens = Solid::sphere(random.range(0.04, 0.08)).translate(at).twist(rad(1.0));
+        let lens = lens.translate(random.vector(-0.5, 0.5));
+        let mesh = (lens | Solid::sphere(1.0)).mesh(&settings(0.6)).unwrap();
+        assert!(mesh.possibly_lost() > 0 || mesh.components().len() > 1, "{at:?}");
+    }
+}
+
+fn settings(cell: f64) -> MeshSettings {
+    MeshSettings { cell: CellSize::Length(cell), ..MeshSettings::default() }
 }

@@ -153,7 +153,10 @@ impl UnionFit {
     /// [`Cancelled`] if the run is.
     pub fn error_of(&self, cloud: &PointCloud, run: &Run) -> Result<f64, Cancelled> {
         let points: Vec<DVec3> = cloud.positions().iter().map(|p| (*p - self.center) / self.size).collect();
-        Ok(run.install(|| self.whole.error(&points, run))? * self.size.powi(3))
+        let run = run.stage(0.0, 1.0);
+        let error = run.install(|| self.whole.error(&points, &run))?;
+        run.report(1.0);
+        Ok(error * self.size.powi(3))
     }
 
     /// How far the points are from the surface, to first order.

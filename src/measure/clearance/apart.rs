@@ -19,6 +19,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rvachev_field::Patches;
 
+use super::levels::Levels;
 use super::piece::Piece;
 use super::{AT_ONCE, Side, common, distance};
 use crate::eval::Block;
@@ -80,8 +81,9 @@ struct Search<'a> {
 /// The nearest points of both surfaces; of the first those near its patches.
 pub(super) fn search(from: &Side<'_>, to: &Side<'_>, run: &Run) -> Result<Found, Cancelled> {
     let mut search = Search::new(from, to);
-    let near = search.near(run)?;
-    search.divide(near, run)?;
+    let [to_open, to_divide] = run.stages([0.4, 0.6]);
+    let near = search.near(&to_open)?;
+    search.divide(near, &to_divide)?;
     search.learn(0.0);
     let (distance, loss) = (search.known(), search.loss());
     let Search { points, least, leans, within, slack, .. } = search;
@@ -185,6 +187,7 @@ impl<'a> Search<'a> {
         let (runs, patches, others) = (self.from.surface.runs(), &self.from.surface.patches, &self.to.surface.patches);
         let mut blocks: Vec<Block> = runs.all().into_iter().collect();
         let mut near = Vec::new();
+        let mut levels = Levels::new(run);
         while !blocks.is_empty() {
             let enough = self.enough();
             let place = |block: &Block| {
@@ -194,14 +197,14 @@ impl<'a> Search<'a> {
                 self.place(enough, centre, by_value, || distance(others, centre) - radius)
             };
             let mut places: Vec<Place> = Vec::with_capacity(blocks.len());
-            for some in blocks.chunks(16 * AT_ONCE) {
-                run.check()?;
-                places.par_extend(some.par_iter().with_min_len(AT_ONCE / 16).map(place));
+            for some in levels.chunks(&blocks, 16 * AT_ONCE) {
+                places.par_extend(some?.par_iter().with_min_len(AT_ONCE / 16).map(place));
             }
             let open = self.sift(&blocks, &places, |block| patches.point(runs.patches(*block).start, [0.0; 2]));
             let patches;
             (blocks, patches) = runs.opened(&open);
             near.extend(patches);
+            levels.down()?;
         }
         Ok(near)
     }
@@ -212,11 +215,12 @@ impl<'a> Search<'a> {
         let (patches, others) = (&self.from.surface.patches, &self.to.surface.patches);
         let mut pieces: Vec<Piece> = near.iter().map(|n| Piece::whole(patches, *n)).collect();
         let mut asked = 0;
+        let mut levels = Levels::new(run);
         while !pieces.is_empty() {
             asked += 3 * pieces.len();
             let mut next = Vec::new();
-            for some in pieces.chunks(16 * AT_ONCE) {
-                run.check()?;
+            for some in levels.chunks(&pieces, 16 * AT_ONCE) {
+                let some = some?;
                 let enough = self.enough();
                 let look = |piece: &Piece| {
                     let mut own = *piece;
@@ -252,6 +256,7 @@ impl<'a> Search<'a> {
                 (self.least, self.leans) = (0.0, true);
                 break;
             }
+            levels.down()?;
             pieces = Vec::with_capacity(4 * next.len());
             for some in next.chunks(16 * AT_ONCE) {
                 run.check()?;

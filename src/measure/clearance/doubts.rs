@@ -9,6 +9,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::levels::Levels;
 use super::overlap::Entry;
 use super::{Side, distance};
 use crate::eval::{Narrowed, Program};
@@ -64,8 +65,9 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
     let whole = Shared { bounds: Bounds::EMPTY, programs };
     let mut open: Vec<Shared> = all.filter_map(|bounds| whole.part(*bounds)).collect();
     let (mut left, mut asked) = (0.0, open.len());
+    let mut levels = Levels::new(run);
     while !open.is_empty() {
-        run.check()?;
+        levels.down()?;
         let is_common = |p: DVec3| {
             sides.iter().all(|side| side.program.value(p) > 0.0 && distance(&side.surface.patches, p) > slack)
         };
@@ -138,8 +140,9 @@ pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f
     };
     let mut open = [boxes(0), if known.of_both { boxes(1) } else { Vec::new() }];
     let mut asked = open[0].len() + open[1].len();
+    let mut levels = Levels::new(run);
     while open.iter().any(|boxes| !boxes.is_empty()) {
-        run.check()?;
+        levels.down()?;
         let are_compared = open[0].len() * open[1].len() <= PAIRS;
         let near = |side: usize, bounds: &Bounds, own: f64| {
             if !known.of_both {

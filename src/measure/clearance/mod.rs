@@ -7,6 +7,8 @@
 
 mod apart;
 mod doubts;
+mod levels;
+mod missed;
 mod overlap;
 mod piece;
 
@@ -15,12 +17,15 @@ use rvachev_field::Patches;
 
 use self::apart::{Found, search};
 use self::doubts::Known;
+use self::missed::inner_point;
 use self::overlap::{Entry, common, depth, entry, within};
 use super::integral::integral;
 use crate::distance::{compiled_with, surface_with};
 use crate::error::PrepareError;
 use crate::eval::{Accuracy, Compiled, Program, Surface};
-use crate::{Run, Solid};
+use crate::geom::figures::point;
+use crate::{Run, Solid, SolidError};
+use rvachev_num::figures;
 
 /// Pieces that are looked at before it is asked whether to go on.
 const AT_ONCE: usize = 256;
@@ -99,13 +104,15 @@ impl Solid {
     /// ranges of the other's value. What [may be missed](crate::lengths#accuracy) where lengths
     /// are measured may be missed here too.
     ///
-    /// Each surface takes as long as a mesh, once. After that a clearance takes milliseconds where
-    /// one place is nearest, some tenths of a second where a gap is even all over, and seconds
-    /// between threads and the like. The volume of an overlap is found as by
-    /// [`measure`](Solid::measure).
+    /// Each surface takes as long as a mesh, once: solids that are moved or turned have that of the
+    /// solid at rest, so that parts of an assembly are not measured anew in each position. After
+    /// that a clearance takes milliseconds where one place is nearest, some tenths of a second where
+    /// a gap is even all over, and seconds between threads and the like. The volume of an overlap is
+    /// found as by [`measure`](Solid::measure).
     ///
     /// # Errors
-    /// What is wrong with a solid, that it has no finite box, or that the work was cancelled.
+    /// What is wrong with a solid, that it has no finite box, that it is so thin that nothing of its
+    /// surface is found ([`SolidError::Surface`]), or that the work was cancelled.
     pub fn clearance(&self, other: &Solid, run: &Run) -> Result<Option<Clearance>, PrepareError> {
         let run = run.stage(0.0, 1.0);
         let found = run.install(|| self.clearance_on(other, &run))?;
@@ -114,23 +121,27 @@ impl Solid {
     }
 
     fn clearance_on(&self, other: &Solid, run: &Run) -> Result<Option<Clearance>, PrepareError> {
-        let [to_own, to_other, to_search] = run.stages([0.35, 0.35, 0.3]);
+        let [to_compile, to_compile_other, to_own, to_other, to_search] = run.stages([0.1, 0.1, 0.25, 0.25, 0.3]);
+        let programs = [compiled_with(self, &to_compile)?, compiled_with(other, &to_compile_other)?];
         let (own_box, other_box) = (self.finite_bounds()?, other.finite_bounds()?);
         if own_box.is_empty() || other_box.is_empty() {
             return Ok(None);
         }
-        let quiet = Run { progress: None, ..run.clone() };
-        let programs = [compiled_with(self, &quiet)?, compiled_with(other, &quiet)?];
         let surfaces = [surface_with(self, &to_own)?, surface_with(other, &to_other)?];
         let sides = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
-        if sides.iter().any(|side| side.surface.patches.is_empty()) {
-            return Ok(None);
+        for (side, bounds) in sides.iter().zip([own_box, other_box]) {
+            if side.surface.patches.is_empty() {
+                return match inner_point(side.program, &bounds, run)? {
+                    Some(p) => Err(SolidError::Surface { reason: side.missed(p) }.into()),
+                    None => Ok(None),
+                };
+            }
         }
         let slack = sides.iter().map(Side::exactness).sum::<f64>();
         // The one whose surface is less in doubt is divided, if the other's values tell distances.
         let is_turned = sides[0].cost(&sides[1]) > sides[1].cost(&sides[0]);
         let [from, to] = if is_turned { [&sides[1], &sides[0]] } else { [&sides[0], &sides[1]] };
-        let [to_find, to_go_on] = to_search.stages([0.4, 0.6]);
+        let [to_find, to_doubt, first, second, third] = to_search.stages([0.4, 0.1, 0.2, 0.2, 0.1]);
         let in_order = |points: [DVec3; 2]| if is_turned { [points[1], points[0]] } else { points };
         let apart = |points: [DVec3; 2], tolerance: f64| {
             let [depth, depth_error, volume, volume_error] = [0.0; 4];
@@ -140,7 +151,7 @@ impl Solid {
         };
         let overlap = |point: DVec3| {
             let common = Clearance { overlaps: true, ..apart([point; 2], slack) };
-            self.overlap(other, common, [from, to], &to_go_on)
+            self.overlap(other, common, [from, to], &third)
         };
         let Found { points, mut least, leans, loss, common } = search(from, to, &to_find)?;
         let distance = points[0].distance(points[1]);
@@ -151,7 +162,7 @@ impl Solid {
         let fine = 2.0 * (from.fineness() + to.fineness());
         if least > 0.0 {
             let known = Known { least, of_both: leans, loss };
-            least = doubts::least([from, to], &known, &to_go_on)?;
+            least = doubts::least([from, to], &known, &to_doubt)?;
         }
         if !do_share {
             return Ok(Some(apart(points, distance - least)));
@@ -162,13 +173,13 @@ impl Solid {
         let mut deepest = if is_apart { 0.0 } else { 2.0 * slack };
         for part in 0..3 {
             let found = match part {
-                0 if is_apart => within(to, from, slack, &to_go_on)?,
+                0 if is_apart => within(to, from, slack, &first)?,
                 // The other's value has told it of all patches.
                 1 if is_apart && !leans => continue,
-                1 if is_apart => within(from, to, slack, &to_go_on)?,
-                0 => entry(from, to, slack, &to_go_on)?,
-                1 => entry(to, from, slack, &to_go_on)?,
-                _ => doubts::entry([from, to], slack, &to_go_on)?,
+                1 if is_apart => within(from, to, slack, &second)?,
+                0 => entry(from, to, slack, &first)?,
+                1 => entry(to, from, slack, &second)?,
+                _ => doubts::entry([from, to], slack, &third)?,
             };
             match found {
                 Entry::At(point) => return Ok(Some(overlap(point)?)),
@@ -187,12 +198,13 @@ impl Solid {
         run: &Run,
     ) -> Result<Clearance, PrepareError> {
         let slack = common.tolerance;
-        let depths = [depth(from, to, slack, run)?, depth(to, from, slack, run)?];
+        let [first, second, to_compile, to_integrate] = run.stages([0.2, 0.2, 0.1, 0.5]);
+        let depths = [depth(from, to, slack, &first)?, depth(to, from, slack, &second)?];
         let deepest = depths.iter().fold(slack, |most, [depth, _]| most.max(*depth));
         let at_most = depths.iter().fold(slack, |most, [depth, more]| most.max(depth + more));
         let both = self & other;
-        let programs = compiled_with(&both, &Run { progress: None, ..run.clone() })?;
-        let found = integral(&programs.surface, &both.finite_bounds()?, VOLUME, CELLS, run)?;
+        let programs = compiled_with(&both, &to_compile)?;
+        let found = integral(&programs.surface, &both.finite_bounds()?, VOLUME, CELLS, &to_integrate)?;
         Ok(Clearance {
             depth: deepest,
             depth_error: at_most - deepest + slack,
@@ -216,7 +228,18 @@ impl<'a> Side<'a> {
         let program = &compiled.surface;
         // A distance that was measured jumps where its patches are off the surface.
         let is_exact = compiled.accuracy == Accuracy::default();
-        Side { program, surface, is_gentle: is_exact && program.is_gentle() && program.is_unbent() }
+        Side { program, surface, is_gentle: is_exact && program.is_gentle() }
+    }
+
+    /// What is said of a surface of which nothing was found, though a point is inside.
+    fn missed(&self, p: DVec3) -> String {
+        let size = self.fineness();
+        format!(
+            "the solid is at {}, and thinner there than what can be told apart of it ({}); make it \
+             thicker, or leave it out of the clearance",
+            point(p, size),
+            figures(size, 2)
+        )
     }
 
     /// How far the patches may be off, but where they are in doubt.

@@ -14,6 +14,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::apart::ball;
+use super::levels::Levels;
 use super::piece::Piece;
 use super::{AT_ONCE, Side, distance};
 use crate::eval::Block;
@@ -65,6 +66,7 @@ fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<
     let bounds = others.bounds().inflate(slack);
     let mut blocks: Vec<Block> = runs.all().into_iter().collect();
     let mut near = Vec::new();
+    let mut levels = Levels::new(run);
     while !blocks.is_empty() {
         // All of it is on one side of the other's surface, or that is near.
         let look = |block: &Block| {
@@ -83,9 +85,8 @@ fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<
             common(from, to, slack, own).map_or(ControlFlow::Continue(Some(*block)), ControlFlow::Break)
         };
         let mut open = Vec::new();
-        for some in blocks.chunks(16 * AT_ONCE) {
-            run.check()?;
-            for found in some.par_iter().map(look).collect::<Vec<ControlFlow<DVec3, Option<Block>>>>() {
+        for some in levels.chunks(&blocks, 16 * AT_ONCE) {
+            for found in some?.par_iter().map(look).collect::<Vec<ControlFlow<DVec3, Option<Block>>>>() {
                 match found {
                     ControlFlow::Break(point) => return Ok(Err(point)),
                     ControlFlow::Continue(block) => open.extend(block),
@@ -95,6 +96,7 @@ fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<
         let patches;
         (blocks, patches) = runs.opened(&open);
         near.extend(patches);
+        levels.down()?;
     }
     Ok(Ok(near))
 }
@@ -102,7 +104,8 @@ fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<
 /// Whether a part of one surface is within the other solid, given that they do not cross each
 /// other: of each patch the middle tells.
 pub(super) fn within(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Entry, Cancelled> {
-    let patches = match near(from, to, slack, run)? {
+    let [to_open, to_look] = run.stages([0.5, 0.5]);
+    let patches = match near(from, to, slack, &to_open)? {
         Ok(near) => near,
         Err(point) => return Ok(Entry::At(point)),
     };
@@ -118,9 +121,8 @@ pub(super) fn within(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> R
         common(from, to, slack, p).map_or_else(|| Entry::AtMost(deep()), Entry::At)
     };
     let mut deepest = 0.0;
-    for some in patches.chunks(16 * AT_ONCE) {
-        run.check()?;
-        for found in some.par_iter().map(look).collect::<Vec<Entry>>() {
+    for some in Levels::new(&to_look).chunks(&patches, 16 * AT_ONCE) {
+        for found in some?.par_iter().map(look).collect::<Vec<Entry>>() {
             match found {
                 Entry::At(_) => return Ok(found),
                 Entry::AtMost(at_most) => deepest = f64::max(deepest, at_most),
@@ -156,18 +158,19 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
             None => ControlFlow::Continue(Some(*piece)),
         }
     };
-    let near = match near(from, to, slack, run)? {
+    let [to_open, to_divide] = run.stages([0.4, 0.6]);
+    let near = match near(from, to, slack, &to_open)? {
         Ok(near) => near,
         Err(point) => return Ok(Entry::At(point)),
     };
     let mut left = 0.0;
     let mut asked = near.len();
     let mut pieces: Vec<Piece> = near.into_iter().map(|n| Piece::whole(patches, n)).collect();
+    let mut levels = Levels::new(&to_divide);
     while !pieces.is_empty() {
         let mut open = Vec::new();
-        for chunk in pieces.chunks(AT_ONCE) {
-            run.check()?;
-            let found: Vec<ControlFlow<DVec3, Option<Piece>>> = chunk.par_iter().map(look).collect();
+        for chunk in levels.chunks(&pieces, AT_ONCE) {
+            let found: Vec<ControlFlow<DVec3, Option<Piece>>> = chunk?.par_iter().map(look).collect();
             for found in found {
                 match found {
                     ControlFlow::Break(point) => return Ok(Entry::At(point)),
@@ -185,6 +188,7 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         };
         left = open.iter().filter(|piece| is_small(piece)).map(reach).fold(left, f64::max);
         open.retain(|piece| !is_small(piece));
+        levels.down()?;
         pieces = open.iter().flat_map(|piece| piece.divided(patches, |_| 0.0)).collect();
     }
     Ok(Entry::AtMost(left))
@@ -204,6 +208,8 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
     let spans = (0..patches.len()).step_by(SPAN).map(|at| at..(at + SPAN).min(patches.len()));
     let mut near: Vec<Range<usize>> = spans.collect();
     let mut pieces: Vec<Piece> = Vec::new();
+    let [to_open, to_divide] = run.stages([0.4, 0.6]);
+    let mut levels = Levels::new(&to_open);
     while !near.is_empty() {
         let look = |span: &Range<usize>| {
             let at = patches.point((span.start + span.end) / 2, [0.0; 2]);
@@ -211,9 +217,8 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
             bounds.inflate(reach).contains(at).then(|| (below(at), reach))
         };
         let mut found = Vec::with_capacity(near.len());
-        for chunk in near.chunks(AT_ONCE) {
-            run.check()?;
-            found.par_extend(chunk.par_iter().map(look));
+        for chunk in levels.chunks(&near, AT_ONCE) {
+            found.par_extend(chunk?.par_iter().map(look));
         }
         best = found.iter().flatten().fold(best, |best: f64, (number, _)| best.max(*number));
         let enough = best + slack.max(RELATIVE * best);
@@ -228,10 +233,11 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
                 near.extend([span.start..middle, middle..span.end]);
             }
         }
+        levels.down()?;
     }
-    run.check()?;
     let mut pieces: Vec<Piece> = pieces.into_par_iter().map(|piece| piece.numbered(below)).collect();
     let mut asked = pieces.len();
+    let mut levels = Levels::new(&to_divide);
     loop {
         best = pieces.iter().flat_map(|piece| piece.numbers).fold(best, f64::max);
         let enough = best + slack.max(RELATIVE * best);
@@ -247,10 +253,10 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
             return Ok([best, deepest - best]);
         }
         let mut next = Vec::with_capacity(4 * pieces.len());
-        for chunk in pieces.chunks(16 * AT_ONCE) {
-            run.check()?;
-            next.par_extend(chunk.par_iter().flat_map_iter(|piece| piece.divided(patches, below)));
+        for chunk in levels.chunks(&pieces, 16 * AT_ONCE) {
+            next.par_extend(chunk?.par_iter().flat_map_iter(|piece| piece.divided(patches, below)));
         }
+        levels.down()?;
         pieces = next;
     }
 }

@@ -74,7 +74,7 @@ pub(super) fn suspected<S: Sampler>(
     if signs.is_mixed() {
         return sampler.is_bored(number, block).then_some(Suspicion::Bored);
     }
-    let bound = sampler.lipschitz_bound(number);
+    let bound = sampler.lipschitz_bound(number, block);
     let slope = if bound.is_finite() { bound * lattice.step() } else { STEEPER * f64::from(steepest(values)) };
     CellRows::near(values, (REACH * slope) as f32).map(|cells| Suspicion::Hidden(Box::new(cells)))
 }

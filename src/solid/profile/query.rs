@@ -1,6 +1,6 @@
 //! Questions about points of the plane.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::{PlaneBounds, Profile};
 use crate::error::PrepareError;
@@ -28,8 +28,16 @@ impl Profile {
     /// # Errors
     /// What is wrong with the profile: see [`SolidError`].
     pub fn values(&self, points: &[DVec2]) -> Result<Vec<f64>, SolidError> {
-        let points: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();
-        self.0.values(&points)
+        self.0.values(&in_space(points))
+    }
+
+    /// [`values`](Profile::values) on a [`Run`]: see
+    /// [`Solid::values_with`](crate::Solid::values_with).
+    ///
+    /// # Errors
+    /// What is wrong with the profile, or that the work was cancelled.
+    pub fn values_with(&self, points: &[DVec2], run: &Run) -> Result<Vec<f64>, PrepareError> {
+        self.0.values_with(&in_space(points), run)
     }
 
     /// Whether a point is inside: the value is positive, or, in a side that parts share, inside is
@@ -46,8 +54,16 @@ impl Profile {
     /// # Errors
     /// What is wrong with the profile: see [`SolidError`].
     pub fn contains_all(&self, points: &[DVec2]) -> Result<Vec<bool>, SolidError> {
-        let points: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();
-        self.0.contains_all(&points)
+        self.0.contains_all(&in_space(points))
+    }
+
+    /// [`contains_all`](Profile::contains_all) on a [`Run`]: see
+    /// [`Solid::contains_all_with`](crate::Solid::contains_all_with).
+    ///
+    /// # Errors
+    /// What is wrong with the profile, or that the work was cancelled.
+    pub fn contains_all_with(&self, points: &[DVec2], run: &Run) -> Result<Vec<bool>, PrepareError> {
+        self.0.contains_all_with(&in_space(points), run)
     }
 
     /// The field's gradient at a point; it points inward. At kinks, that of one side.
@@ -71,8 +87,16 @@ impl Profile {
     /// # Errors
     /// What is wrong with the profile: see [`SolidError`].
     pub fn gradients(&self, points: &[DVec2]) -> Result<Vec<DVec2>, SolidError> {
-        let points: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();
-        Ok(self.0.gradients(&points)?.into_iter().map(|gradient| gradient.truncate()).collect())
+        Ok(in_plane(self.0.gradients(&in_space(points))?))
+    }
+
+    /// [`gradients`](Profile::gradients) on a [`Run`]: see
+    /// [`Solid::gradients_with`](crate::Solid::gradients_with).
+    ///
+    /// # Errors
+    /// What is wrong with the profile, or that the work was cancelled.
+    pub fn gradients_with(&self, points: &[DVec2], run: &Run) -> Result<Vec<DVec2>, PrepareError> {
+        Ok(in_plane(self.0.gradients_with(&in_space(points), run)?))
     }
 
     /// The leaf that decides at a point, by the path to it and its [name](Profile::named).
@@ -127,4 +151,12 @@ impl Profile {
     pub fn prepare(&self, run: &Run) -> Result<Accuracy, PrepareError> {
         self.0.prepare(run)
     }
+}
+
+fn in_space(points: &[DVec2]) -> Vec<DVec3> {
+    points.iter().map(|p| p.extend(0.0)).collect()
+}
+
+fn in_plane(vectors: Vec<DVec3>) -> Vec<DVec2> {
+    vectors.into_iter().map(DVec3::truncate).collect()
 }

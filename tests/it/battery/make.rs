@@ -9,11 +9,15 @@ use rvachev::{
 use crate::support::{Random, random_solid};
 use crate::zoo::random_profile;
 
+/// From this depth on a first operand is only one call less deep.
+const DEEP: usize = 4;
+
 /// A solid for a seed, which may be one that is refused when it is used; `None` where there is
 /// none.
 pub fn solid(seed: u64) -> Option<Solid> {
     let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 11);
-    let depth = random.below(4);
+    // Some are a chain of many calls.
+    let depth = if random.chance(0.1) { DEEP + random.below(6) } else { random.below(DEEP) };
     if random.chance(0.25) {
         let solid = random_solid(&mut random, depth.min(2));
         return Some(solid);
@@ -47,6 +51,20 @@ fn any(random: &mut Random, depth: usize) -> Option<Solid> {
     })
 }
 
+/// A leaf whose value is the distance, somewhere.
+fn exact(random: &mut Random) -> Solid {
+    let [a, b, c] = random.vector(0.3, 1.5).to_array();
+    let solid = match random.below(6) {
+        0 => Solid::sphere(a),
+        1 => Solid::cuboid([a, b, c]),
+        2 => Solid::cylinder(a, b),
+        3 => Solid::torus(a, 0.8 * a.min(b)),
+        4 => Solid::capsule(a, 2.0 * a + b),
+        _ => Solid::cone(a, 0.5 * b, c),
+    };
+    solid.rotate(random.rotation()).translate(random.vector(-0.5, 0.5))
+}
+
 fn is_shape(entry: &Entry) -> bool {
     !matches!(entry.group(), Group::Curve | Group::Law | Group::Function | Group::Blend | Group::Caps)
 }
@@ -61,16 +79,24 @@ fn called(random: &mut Random, entry: &'static Entry, depth: usize) -> Option<Ca
             *value = other;
         }
     }
-    // What is measured takes a while: there is little of it, and on leaves.
-    let is_slow = entry.group() == Group::Length && entry.name() != "level" || call.values.iter().any(is_measured);
-    if is_slow && random.chance(0.8) {
+    // What is measured takes a while: there is little of it, and on leaves. Lengths of what tells
+    // distances are not.
+    let is_length = entry.group() == Group::Length && entry.name() != "level";
+    let is_measured = call.values.iter().any(is_measured);
+    let is_rare = random.chance(0.2);
+    if is_measured && !is_rare {
         return None;
     }
-    for operand in &mut call.operands {
+    let is_slow = is_length || is_measured;
+    for (nth, operand) in call.operands.iter_mut().enumerate() {
         match operand {
             Part::Solid(solid) if entry.operands() != Operands::Length => {
-                let depth = if is_slow { 0 } else { random.below(depth.max(1)) };
-                *solid = any(random, depth)?;
+                let next = if nth == 0 && depth >= DEEP { depth - 1 } else { random.below(depth.min(DEEP).max(1)) };
+                *solid = match is_slow {
+                    false => any(random, next)?,
+                    true if is_rare => any(random, 0)?,
+                    true => exact(random),
+                };
             }
             Part::Profile(profile) if is_slow => *profile = Profile::rectangle(random.vector(0.5, 2.0).truncate()),
             Part::Profile(profile) => *profile = random_profile(random, 1),

@@ -7,7 +7,7 @@ use rvachev::{
     program::{Program, Region},
 };
 
-use super::{Fault, fault};
+use super::{Fault, fault, is_late};
 use crate::narrow::contradiction;
 use crate::support::{Random, frame_of, lanes32, lanes64, random_box, samples};
 
@@ -22,6 +22,19 @@ fn differences(program: &Program, p: DVec3, size: f64) -> Option<DVec3> {
     };
     let (fine, coarse) = (by(1e-6 * size)?, by(4e-5 * size)?);
     (fine.length() > 1e-3 && fine.distance(coarse) < 1e-3 * fine.length()).then_some(fine)
+}
+
+/// Whether a value is the program's to within rounding: lanes have their own roots and powers, each
+/// right to some units in the last place, so that what they tell is the value of a point beside
+/// this one. Where it is steep, or jumps, the range about the point holds it.
+fn is_rounded(program: &Program, p: DVec3, value: f64, size: f64) -> bool {
+    const ROUNDING: f64 = 1e-12;
+    let scale = size + p.abs().max_element();
+    let off = (value - program.value(p)).abs();
+    off <= ROUNDING * (value.abs() + scale) || {
+        let range = program.range(&Bounds::from_center(p, DVec3::splat(ROUNDING * scale)));
+        range.lo() - ROUNDING * (value.abs() + scale) <= value && value <= range.hi() + ROUNDING * (value.abs() + scale)
+    }
 }
 
 pub fn check(solid: &Solid) -> Result<(), Fault> {
@@ -39,11 +52,9 @@ pub fn check(solid: &Solid) -> Result<(), Fault> {
         for (i, &p) in points.iter().enumerate() {
             let value = program.value(p);
             fault("value", value.is_finite(), || format!("{value} at {p}"))?;
-            let off = (many[i] - value).abs();
-            // Lanes have their own roots and powers.
-            let may =
-                off <= 1e-9 * (value.abs() + size) || value.signum() == many[i].signum() && off < 0.06 * value.abs();
-            fault("lanes of f64", may, || format!("{:e} for {value:e} at {p}", many[i]))?;
+            fault("lanes of f64", is_rounded(program, p, many[i], size), || {
+                format!("{:e} for {value:e} at {p}", many[i])
+            })?;
             let (p, value) = (seen[i], program.value(seen[i]));
             let is_sure = value.abs() > 1e-3 * size;
             fault("lanes of f32", !is_sure || (value > 0.0) == (single[i] > 0.0), || {
@@ -57,12 +68,18 @@ pub fn check(solid: &Solid) -> Result<(), Fault> {
         fault("bounds", is_held, || format!("{value:e} at {p}, outside of {bounds:?}"))?;
     }
     for &p in points.iter().skip(8).step_by(4) {
+        if is_late() {
+            return Ok(());
+        }
         let Some(expected) = differences(&field, p, size) else { continue };
         let (_, gradient) = field.gradient(p);
         let is_near = gradient.distance(expected) < 0.02 * expected.length();
         fault("gradient", is_near, || format!("{gradient} for {expected} at {p}"))?;
     }
     for _ in 0..4 {
+        if is_late() {
+            return Ok(());
+        }
         let cell = random_box(&mut random, &around);
         let points = samples(&mut random, &cell, 24);
         for program in [&surface, &field] {

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use rvachev::{CellSize, MeshSettings, Plane, PlaneBounds, Polyline, Run, Solid, program::Program};
 
 use super::make::bounded;
-use super::{Fault, fault};
+use super::{Fault, fault, is_late};
 use crate::support::{Random, frame_of};
 
 /// What is asked, and how large it is.
@@ -21,10 +21,8 @@ pub fn check(solid: &Solid) -> Result<(), Fault> {
     let program = solid.surface_program().unwrap();
     let frame = frame_of(solid);
     let mut subject = Subject { solid, program, frame, size: frame.longest_side(), random: Random::new(23) };
-    subject.mesh()?;
-    subject.slice()?;
-    subject.rays()?;
-    subject.closest()
+    let questions = [Subject::mesh, Subject::slice, Subject::rays, Subject::closest];
+    questions.into_iter().try_for_each(|ask| if is_late() { Ok(()) } else { ask(&mut subject) })
 }
 
 /// The mesh of a solid in cells of so many to the longest side.
@@ -80,15 +78,19 @@ impl Subject<'_> {
             let slice = self.solid.slice_within(&plane, region).map_err(wrong)?;
             let tolerance = 2e-3 * self.size;
             let contours = slice.contours(tolerance).map_err(wrong)?;
-            if contours.unresolved() > 0 {
-                continue;
-            }
+            // What is not resolved is narrower than the tolerance: hardly a point is in it.
+            let mut spare = if contours.unresolved() > 0 { 4 } else { 0 };
             for _ in 0..150 {
                 let p = region.min + self.random.vector(0.0, 1.0).truncate() * (region.max - region.min);
                 let away = contours.lines().iter().map(|line| distance(line, p)).fold(f64::INFINITY, f64::min);
                 let expected = self.inside(plane.point(p));
                 let enclosed = contours.lines().iter().filter(|line| winds(line, p)).count() % 2 == 1;
-                fault("slice", away < 3.0 * tolerance || enclosed == expected, || {
+                let is_right = away < 3.0 * tolerance || enclosed == expected;
+                if !is_right && spare > 0 {
+                    spare -= 1;
+                    continue;
+                }
+                fault("slice", is_right, || {
                     let at = plane.point(p);
                     format!(
                         "{at} is inside: {enclosed} by contours {away:e} away, {expected} by the value {:e}; {plane:?}",

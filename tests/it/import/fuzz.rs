@@ -1,6 +1,8 @@
 //! Damaged files: a reader returns, whatever the bytes.
 
 use std::io::{Cursor, Read, Write};
+use std::ops::Range;
+use std::time::Instant;
 
 use rvachev::io::{
     FileFormat, LoadSettings, write_3mf, write_glb, write_obj, write_ply, write_ply_points, write_stl, write_stl_ascii,
@@ -10,16 +12,8 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use super::bytes;
-
-/// A generator of whole numbers.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, most: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) as usize) % most.max(1)
-    }
-}
+use crate::battery::seeds;
+use crate::support::Random;
 
 /// Words that formats have a meaning for, and numbers at the ends of their ranges.
 const WORDS: [&[u8]; 27] = [
@@ -56,7 +50,7 @@ const WORDS: [&[u8]; 27] = [
 fn damaged(random: &mut Random, original: &[u8]) -> Vec<u8> {
     let mut bytes = original.to_vec();
     for _ in 0..1 + random.below(4) {
-        let at = random.below(bytes.len());
+        let at = random.below(bytes.len().max(1));
         match random.below(6) {
             0 => bytes.truncate(at),
             1 | 2 if !bytes.is_empty() => bytes[at] = random.below(256) as u8,
@@ -145,70 +139,75 @@ fn originals() -> Vec<Original> {
     files.into_iter().map(plain).chain([model, PARTS.to_vec()].map(of_model)).collect()
 }
 
-fn run(count: usize, seed: u64, is_chosen: impl Fn(FileFormat) -> bool) {
-    let settings = LoadSettings { most_bytes: 1 << 20, ..LoadSettings::default() };
-    for Original { format, bytes, file } in originals().into_iter().filter(|original| is_chosen(original.format)) {
-        let whole = Mesh::read(format, &file(bytes.clone())[..], &settings);
-        assert!(format != FileFormat::ThreeMf || whole.is_ok(), "{whole:?}");
-        let (mut random, mut good) = (Random(seed), 0);
-        for _ in 0..count {
-            let bytes = file(damaged(&mut random, &bytes));
-            match Mesh::read(format, &bytes[..], &settings) {
-                Ok(mesh) => {
-                    good += 1;
-                    assert!(mesh.positions().iter().all(|p| p.is_finite()));
-                }
-                Err(error) => assert!(!error.to_string().is_empty()),
-            }
-            let _ = PointCloud::read(format, &bytes[..], &settings);
+/// The input that is read: of one that a reader does not survive it is told which it was.
+struct Reading<'a> {
+    format: FileFormat,
+    number: u64,
+    bytes: &'a [u8],
+}
+
+impl Drop for Reading<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            let Reading { format, number, bytes } = self;
+            println!("{format:?}, input {number}: {}", bytes.escape_ascii());
         }
-        println!("{format:?}: {good} of {count} read");
     }
 }
 
+/// Reads these inputs of a format: each is told by its number, whatever was read before it.
+fn run(inputs: Range<u64>, format: FileFormat) {
+    const TOLD: u64 = 1_000_000;
+    const OF_CLOUDS: u64 = 7;
+    let settings = LoadSettings { most_bytes: 1 << 20, ..LoadSettings::default() };
+    let all: Vec<Original> = originals().into_iter().filter(|original| original.format == format).collect();
+    for Original { bytes, file, .. } in &all {
+        let whole = Mesh::read(format, &file(bytes.clone())[..], &settings);
+        assert!(format != FileFormat::ThreeMf || whole.is_ok(), "{whole:?}");
+    }
+    let (mut good, start) = (0, Instant::now());
+    for number in inputs.clone() {
+        let Original { bytes, file, .. } = &all[(number % all.len() as u64) as usize];
+        let bytes = file(damaged(&mut Random::new(number), bytes));
+        let _reading = Reading { format, number, bytes: &bytes };
+        match Mesh::read(format, &bytes[..], &settings) {
+            Ok(mesh) => {
+                good += 1;
+                assert!(mesh.positions().iter().all(|p| p.is_finite()));
+            }
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+        // Clouds of most formats are the vertices of what was just read.
+        if (matches!(format, FileFormat::Ply | FileFormat::Xyz) || number.is_multiple_of(OF_CLOUDS))
+            && let Ok(cloud) = PointCloud::read(format, &bytes[..], &settings)
+        {
+            assert!(cloud.positions().iter().all(|p| p.is_finite()));
+        }
+        if (number + 1).is_multiple_of(TOLD) {
+            println!("{format:?}: {}..{} done, {good} read, {:?}", inputs.start, number + 1, start.elapsed());
+        }
+    }
+    println!("{format:?}: {good} of {inputs:?} read, {:?}", start.elapsed());
+}
+
+const FORMATS: [FileFormat; 6] =
+    [FileFormat::Stl, FileFormat::Obj, FileFormat::Ply, FileFormat::Glb, FileFormat::ThreeMf, FileFormat::Xyz];
+
 #[test]
 fn damaged_files_are_errors() {
-    run(1_000, 1, |_| true);
-}
-
-/// Ten million inputs of each file of a format.
-fn many(format: FileFormat) {
-    run(10_000_000, 2, |other| other == format);
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn many_damaged_stl_files_are_errors() {
-    many(FileFormat::Stl);
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn many_damaged_obj_files_are_errors() {
-    many(FileFormat::Obj);
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn many_damaged_ply_files_are_errors() {
-    many(FileFormat::Ply);
-}
-
-#[test]
-#[ignore = "takes an hour"]
-fn many_damaged_glb_files_are_errors() {
-    many(FileFormat::Glb);
+    for format in FORMATS {
+        run(0..2000, format);
+    }
 }
 
 /// Of the archive most end at a checksum; damaged models are packed anew.
 #[test]
-#[ignore = "takes half an hour"]
-fn many_damaged_3mf_files_are_errors() {
-    many(FileFormat::ThreeMf);
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn many_damaged_rows_are_errors() {
-    many(FileFormat::Xyz);
+#[ignore = "takes hours: FUZZ_INPUTS=0..1000000 chooses, FUZZ_FORMAT=stl"]
+fn ten_million_damaged_files_a_format_are_errors() {
+    let chosen = std::env::var("FUZZ_FORMAT").ok();
+    for format in FORMATS {
+        if chosen.as_ref().is_none_or(|name| format!("{format:?}").eq_ignore_ascii_case(name)) {
+            run(seeds("FUZZ_INPUTS", 0..10_000_000), format);
+        }
+    }
 }

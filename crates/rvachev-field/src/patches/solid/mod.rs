@@ -100,24 +100,26 @@ impl MeshLeaf {
         owners: Option<&[u32]>,
         run: &Run,
     ) -> Result<MeshLeaf, Cancelled> {
-        let [to_build, to_close] = run.stages([0.6, 0.4]);
+        let [to_build, to_weld, to_open, to_wind, to_close] = run.stages([0.6, 0.12, 0.12, 0.06, 0.1]);
         let corner = |v: u32| positions[v as usize].as_dvec3();
         let flat = gathered(triangles.iter().map(|corners| Patch::flat(corners.map(corner))), &to_build)?;
         let patches = Arc::new(Patches::new(&flat, &to_build)?);
         drop(flat);
-        to_close.check()?;
-        let vertices = rim::welded(positions, triangles, &to_close)?;
-        to_close.report(0.3);
-        let open = rim::open_edges_of(positions, &vertices, &to_close)?;
-        to_close.report(0.6);
-        let winding = Arc::new(Winding::new(patches.clone(), open.is_empty(), &to_close)?);
-        let rim = Rim::new(&open, &to_close)?;
+        run.check()?;
+        let vertices = rim::welded(positions, triangles, &to_weld)?;
+        to_weld.report(1.0);
+        let open = rim::open_edges_of(positions, &vertices, &to_open)?;
+        to_open.report(1.0);
+        let winding = Arc::new(Winding::new(patches.clone(), open.is_empty(), &to_wind)?);
+        to_wind.report(1.0);
+        let [to_rim, to_gaps] = to_close.stages([0.4, 0.6]);
+        let rim = Rim::new(&open, &to_rim)?;
         let mut bounds = patches.bounds();
         let membrane = match rim {
             None => None,
             Some(rim) => {
                 let membrane = Membrane { winding: winding.clone(), rim };
-                bounds = membrane.bounds(bounds, &Gaps::new(&open, &to_close)?, &to_close)?;
+                bounds = membrane.bounds(bounds, &Gaps::new(&open, &to_gaps)?, &to_gaps)?;
                 Some(Arc::new(membrane))
             }
         };
