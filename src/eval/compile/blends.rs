@@ -149,5 +149,5 @@ fn margin(solid: &Solid, measured: &Measured, radius: f64) -> f64 {
 
 /// How steep the values of a solid are taken to be.
 fn steepest(program: &Program) -> f64 {
-    if program.is_gentle() && program.is_unbent() { 1.0 } else { 4.0 }
+    if program.is_gentle() { 1.0 } else { 4.0 }
 }
