@@ -69,7 +69,7 @@ const NUMBERS: Most = Most { refused: 0.1, slow: 0.01 };
 const SHAPES: Most = Most { refused: 0.1, slow: 0.08 };
 
 /// So many are many.
-const MANY: u32 = 400;
+const MANY: u32 = 100;
 
 /// Makes a solid of each seed and checks it. Fails at the end, with a minimal program for each of
 /// the first faults, or where too many are refused or slow; at once where one does not end.

@@ -40,7 +40,7 @@ impl Leaf {
     }
 
     /// About how many of its axes it may be turned besides.
-    fn turns(&self) -> usize {
+    pub(super) fn turns(&self) -> usize {
         match &self.shape {
             Shape::Sphere(_) | Shape::Superellipsoid(_) | Shape::Supersolid(_) => 0,
             Shape::Box(_) | Shape::RoundedRectangle { .. } | Shape::Profile { .. } => 3,

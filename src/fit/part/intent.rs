@@ -27,6 +27,9 @@ const TURNED: f64 = 2e-3;
 /// Turns by less, in radians, are rounding.
 const LEAST_TURN: f64 = 1e-6;
 
+/// Axes that differ by less, as a sine, were made one, or square.
+const SAME: f64 = 1e-9;
+
 /// What vertices leave open of a length at the least, in diagonals, and what is of a leaf's
 /// surface.
 const OPEN: f64 = 1e-5;
@@ -64,6 +67,7 @@ pub(super) fn changes(leaf: usize, old: &Leaf, numbers: &[f64]) -> Vec<Change> {
 }
 
 /// A leaf in length units, with what was changed of it.
+#[derive(Clone)]
 pub(super) struct Meant {
     pub(super) leaf: Leaf,
     pub(super) changes: Vec<Change>,
@@ -91,7 +95,7 @@ impl Free {
         ((0.5 * off.to_cols_array().iter().map(|x| x * x).sum::<f64>()).sqrt(), back)
     }
 
-    /// What is told of the axes of a leaf, which is the nth.
+    /// What is told of the settled axes of a leaf, which is the nth.
     pub(super) fn turn(&self, nth: usize, leaf: &Leaf) -> Option<Change> {
         let (angle, back) = self.settled(leaf);
         let of = Changed::Turn(back);
@@ -102,6 +106,22 @@ impl Free {
 
 /// Leaves with whether each adds, in their order.
 type Leaves = Vec<(bool, Leaf)>;
+
+/// Whether axes of a leaf are those of coordinates, or along or across those of another one: they
+/// were settled, then. What is oblique to all is as it was found.
+pub(super) fn is_settled(leaves: &[(bool, Leaf)], nth: usize) -> bool {
+    let axes = |leaf: &Leaf| {
+        let Leaf { rotation, .. } = leaf;
+        let first = if leaf.turns() == 3 { 0 } else { 2 };
+        (first..3).map(|axis| rotation.col(axis)).collect::<Vec<_>>()
+    };
+    let others = leaves.iter().enumerate().filter(|(i, (_, leaf))| *i != nth && leaf.turns() > 0);
+    let others: Vec<DVec3> = others.flat_map(|(_, (_, leaf))| axes(leaf)).collect();
+    axes(&leaves[nth].1).iter().any(|own| {
+        DVec3::AXES.iter().chain(&others).any(|axis| own.cross(*axis).length() < SAME)
+            || others.iter().any(|axis| own.dot(*axis).abs() < SAME)
+    })
+}
 
 /// The leaves with the numbers that are meant, in length units of a part with such vertices and
 /// such a diagonal.
@@ -115,14 +135,14 @@ pub(super) fn intended(
     let open: Vec<f64> = (leaves.iter().zip(free))
         .map(|((_, leaf), free)| open(if free.is_told { &free.leaf } else { leaf }, vertices, size))
         .collect();
-    let meant = |(((adds, leaf), free), open): ((&(bool, Leaf), &Free), &f64)| {
+    let meant = |(i, (((adds, leaf), free), open)): (usize, ((&(bool, Leaf), &Free), &f64))| {
         // By what a turn moves the ends: that is left open as well. Half-spaces reach all over.
         let reach = if leaf.reach() == DVec3::ZERO { 0.5 * size } else { leaf.reach().length() };
         let within = (open / reach).min(TURNED);
-        let is_turned = free.is_told && free.settled(leaf).0 > within;
+        let is_turned = free.is_told && (free.settled(leaf).0 > within || !is_settled(leaves, i));
         (*adds, if is_turned { &free.leaf } else { leaf }.aligned(within))
     };
-    let mut meant: Leaves = leaves.iter().zip(free).zip(&open).map(meant).collect();
+    let mut meant: Leaves = leaves.iter().zip(free).zip(&open).enumerate().map(meant).collect();
     // How far each number may be moved, by leaves.
     let within: Vec<Vec<f64>> = (meant.iter().zip(&open))
         .map(|((_, leaf), open)| leaf.leverages().into_iter().map(|by| by * open).collect())
@@ -151,9 +171,10 @@ pub(super) fn intended(
         numbers.push(own);
     }
     make_equal(&mut numbers, loose);
+    let are_settled: Vec<bool> = (0..meant.len()).map(|i| is_settled(&meant, i)).collect();
     let mut all = Vec::new();
     for (i, (((_, leaf), numbers), free)) in meant.iter_mut().zip(&numbers).zip(free).enumerate() {
-        all.extend(free.turn(i, leaf));
+        all.extend(free.turn(i, leaf).filter(|_| are_settled[i]));
         let Some(made) = leaf.made_of(numbers) else { continue };
         all.extend(changes(i, leaf, numbers));
         *leaf = made;

@@ -278,7 +278,7 @@ impl Leaf {
     }
 }
 
-/// What turns a leaf whose axes were settled back to where it was, about its centre.
+/// What turns a leaf whose axes were settled back to where it was.
 pub(super) fn tilt(leaf: &Leaf, settled: &Leaf) -> DAffine3 {
     let turn = if settled.rotation == leaf.rotation {
         DMat3::IDENTITY
@@ -290,7 +290,7 @@ pub(super) fn tilt(leaf: &Leaf, settled: &Leaf) -> DAffine3 {
         let names = (leaf.rotation.transpose() * settled.rotation).to_cols_array().map(f64::round);
         leaf.rotation * DMat3::from_cols_array(&names) * settled.rotation.transpose()
     };
-    DAffine3 { matrix3: turn, translation: leaf.centre - turn * leaf.centre }
+    DAffine3 { matrix3: turn, translation: leaf.centre - turn * settled.centre }
 }
 
 #[cfg(test)]

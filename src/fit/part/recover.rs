@@ -166,7 +166,7 @@ fn recovered(
         true => exact(&mut selector, model, vertices, &samples, &mut topologies, &to_select)?,
         false => unsettled(&mut selector, model, vertices, &samples, &to_select)?,
     };
-    let Snapped { model, mut meant } = snapped;
+    let Snapped { model, meant } = snapped;
     times.snapping = clock.lap();
     to_select.report(1.0);
     if model.steps.is_empty() {
@@ -178,7 +178,9 @@ fn recovered(
     let leaves = selector.leaves(&model.steps);
     // What has no round numbers goes outwards as it is.
     let meant = (model.steps.iter().zip(&leaves))
-        .map(|(step, (_, leaf))| meant.remove(&step.which).unwrap_or_else(|| Meant::of(leaf.outward(centre, size))))
+        .map(|(step, (_, leaf))| {
+            meant.get(&step.which).cloned().unwrap_or_else(|| Meant::of(leaf.outward(centre, size)))
+        })
         .collect();
     let mut fit = finish(&leaves, meant, body, &samples, queries.spread(), topology, &to_finish)?;
     times.measures = clock.lap();

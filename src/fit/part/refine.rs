@@ -7,7 +7,7 @@
 //! So a residual depends on the parameters of one leaf only, and each is fitted alone: robust
 //! Levenberg–Marquardt (Geman and McClure), only samples whose normals agree.
 
-use glam::DVec3;
+use glam::{DMat3, DQuat, DVec3};
 
 use super::freedom::{Axes, MOST};
 use super::leaf::Leaf;
@@ -95,16 +95,22 @@ fn owned(
     own
 }
 
-/// The leaves, turned as their samples tell; where these are too few, as they were.
+/// The leaves, where they are if turned as their samples tell; where these are too few, as they
+/// were.
 pub(super) fn turned(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> Result<Vec<Leaf>, Cancelled> {
     let width = WIDTHS[1].max(1.5 * samples.noise);
     let turned = |((_, leaf), own): (&(bool, Leaf), Vec<(DVec3, f64)>)| {
         run.check()?;
-        if own.len() < 2 * leaf.freedom(Axes::Free) {
+        if leaf.turns() == 0 || own.len() < 2 * leaf.freedom(Axes::Free) {
             return Ok(leaf.clone());
         }
-        let free = fitted(leaf, Axes::Free, &own, width, |leaf, p| leaf.distance(p));
-        Ok(Leaf { rotation: free.rotation, ..leaf.clone() })
+        let mut free = fitted(leaf, Axes::Free, &own, width, |leaf, p| leaf.distance(p));
+        if leaf.turns() < 3 {
+            // About its own axis it was not settled.
+            let [from, to] = [leaf, &free].map(|leaf| leaf.rotation.z_axis);
+            free.rotation = DMat3::from_quat(DQuat::from_rotation_arc(from, to)) * leaf.rotation;
+        }
+        Ok(free)
     };
     // What a settled axis is off may be more than noise.
     leaves.iter().zip(owned(leaves, samples, WIDTHS[0].max(3.0 * width), |_| true)).map(turned).collect()

@@ -47,7 +47,7 @@ pub(super) fn turned(laid: &[(bool, Leaf)], vertices: &[DVec3], run: &Run) -> Re
     let is_met = met(&free, vertices);
     let told = |(i, (_, leaf)): (usize, (bool, Leaf))| {
         let [meant, now] = is_met[i];
-        let is_told = 2 * now > meant && now >= was_met[i][1];
+        let is_told = leaf.turns() > 0 && 2 * now > meant && now >= was_met[i][1];
         (is_told && leaf.centre.distance(laid[i].1.centre) <= FARTHEST).then_some(leaf)
     };
     Ok(free.into_iter().enumerate().map(told).collect())

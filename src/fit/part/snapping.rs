@@ -13,8 +13,9 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::super::error::FitError;
-use super::intent::{Change, Free, Meant, changes, intended};
+use super::intent::{Change, Free, Meant, changes, intended, is_settled};
 use super::leaf::Leaf;
+use super::measures::tilt;
 use super::model::{Model, Step};
 use super::refine;
 use super::samples::Samples;
@@ -58,6 +59,13 @@ pub(super) fn exact(
         let own = changes.iter().filter(|change| change.leaf == i).copied().collect();
         meant.insert(step.which, Meant { leaf, changes: own });
     }
+    // What is taken back has its own numbers, and settled axes all the same.
+    let as_found = selector.leaves(&found.steps);
+    for (i, (step, (_, leaf))) in found.steps.iter().zip(&as_found).enumerate() {
+        let leaf = leaf.outward(centre, size);
+        let changes = free[i].turn(i, &leaf).filter(|_| is_settled(&as_found, i)).into_iter().collect();
+        meant.entry(step.which).or_insert(Meant { leaf, changes });
+    }
     let exact = selector.model(steps);
     let model = harmless(selector, &found, exact, |model| topologies.off(selector, model))?;
     Ok(Snapped { model, meant })
@@ -85,14 +93,17 @@ pub(super) fn unsettled(
     run: &Run,
 ) -> Result<Snapped, Cancelled> {
     let leaves = selector.leaves(&model.steps);
+    let most = model.cost + IDLE;
     for (i, free) in free(&leaves, vertices, samples, run)?.into_iter().enumerate() {
         run.check()?;
-        let turned = Leaf { rotation: free.leaf.rotation, ..leaves[i].1.clone() };
+        // Its sizes are no concern of vertices.
+        let leaf = &leaves[i].1;
+        let turned = leaf.turned_by(&tilt(&free.leaf.inward(samples.centre, samples.size), leaf));
         let mut steps = model.steps.clone();
         let may = selector.pool.candidates[steps[i].which as usize].may;
         steps[i].which = selector.pool.add(turned, selector.queries, may, None);
         let next = selector.model(steps);
-        if next.cost < model.cost + IDLE {
+        if next.cost < most {
             model = next;
         }
     }
@@ -174,9 +185,10 @@ pub(super) fn opened(
     let leaves = selector.leaves(&model.steps);
     let free = free(&leaves, &[], samples, run)?;
     let mut meant = BTreeMap::new();
-    for (i, (step, ((_, leaf), free))) in model.steps.iter().zip(leaves.iter().zip(&free)).enumerate() {
+    let turn = |i: usize, leaf: &Leaf| free[i].turn(i, leaf).filter(|_| is_settled(&leaves, i));
+    for (i, (step, (_, leaf))) in model.steps.iter().zip(&leaves).enumerate() {
         let leaf = leaf.outward(centre, size);
-        if let Some(turn) = free.turn(i, &leaf) {
+        if let Some(turn) = turn(i, &leaf) {
             meant.insert(step.which, Meant { changes: vec![turn], leaf });
         }
     }
@@ -196,7 +208,7 @@ pub(super) fn opened(
                 // The other end is the same but for the last digits.
                 let is_moved = |change: &Change| (change.to - change.from).abs() > GRAIN * size;
                 let ends = changes(i, &old, &numbers).into_iter().filter(is_moved);
-                let changes = free[i].turn(i, &leaf).into_iter().chain(ends).collect();
+                let changes = turn(i, &old).into_iter().chain(ends).collect();
                 meant.insert(which, Meant { changes, leaf });
                 model = next;
             }

@@ -67,7 +67,7 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
     let (mut left, mut asked) = (0.0, open.len());
     let mut levels = Levels::new(run);
     while !open.is_empty() {
-        levels.down()?;
+        run.check()?;
         let is_common = |p: DVec3| {
             sides.iter().all(|side| side.program.value(p) > 0.0 && distance(&side.surface.patches, p) > slack)
         };
@@ -89,6 +89,7 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
         left = small.iter().map(deepest).fold(left, f64::max);
         open =
             large.par_iter().flat_map_iter(|part| part.bounds.octants().map(|own| part.part(own))).flatten().collect();
+        levels.down()?;
     }
     Ok(Entry::AtMost(left))
 }
@@ -142,7 +143,7 @@ pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f
     let mut asked = open[0].len() + open[1].len();
     let mut levels = Levels::new(run);
     while open.iter().any(|boxes| !boxes.is_empty()) {
-        levels.down()?;
+        run.check()?;
         let are_compared = open[0].len() * open[1].len() <= PAIRS;
         let near = |side: usize, bounds: &Bounds, own: f64| {
             if !known.of_both {
@@ -175,6 +176,7 @@ pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f
             next[side] = large.par_iter().flat_map_iter(parts).flatten().collect();
         }
         open = next;
+        levels.down()?;
     }
     Ok(least)
 }

@@ -129,19 +129,21 @@ impl Solid {
         }
         let surfaces = [surface_with(self, &to_own)?, surface_with(other, &to_other)?];
         let sides = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
+        let mut missed = None;
         for (side, bounds) in sides.iter().zip([own_box, other_box]) {
             if side.surface.patches.is_empty() {
-                return match inner_point(side.program, &bounds, run)? {
-                    Some(p) => Err(SolidError::Surface { reason: side.missed(p) }.into()),
-                    None => Ok(None),
-                };
+                let Some(p) = inner_point(side.program, &bounds, run)? else { return Ok(None) };
+                missed = missed.or(Some(side.missed(p)));
             }
+        }
+        if let Some(reason) = missed {
+            return Err(SolidError::Surface { reason }.into());
         }
         let slack = sides.iter().map(Side::exactness).sum::<f64>();
         // The one whose surface is less in doubt is divided, if the other's values tell distances.
         let is_turned = sides[0].cost(&sides[1]) > sides[1].cost(&sides[0]);
         let [from, to] = if is_turned { [&sides[1], &sides[0]] } else { [&sides[0], &sides[1]] };
-        let [to_find, to_doubt, first, second, third] = to_search.stages([0.4, 0.1, 0.2, 0.2, 0.1]);
+        let [to_find, to_doubt, first, second, third, to_overlap] = to_search.stages([0.35, 0.1, 0.1, 0.1, 0.05, 0.3]);
         let in_order = |points: [DVec3; 2]| if is_turned { [points[1], points[0]] } else { points };
         let apart = |points: [DVec3; 2], tolerance: f64| {
             let [depth, depth_error, volume, volume_error] = [0.0; 4];
@@ -151,7 +153,7 @@ impl Solid {
         };
         let overlap = |point: DVec3| {
             let common = Clearance { overlaps: true, ..apart([point; 2], slack) };
-            self.overlap(other, common, [from, to], &third)
+            self.overlap(other, common, [from, to], &to_overlap)
         };
         let Found { points, mut least, leans, loss, common } = search(from, to, &to_find)?;
         let distance = points[0].distance(points[1]);
