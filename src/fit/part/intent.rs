@@ -135,14 +135,14 @@ pub(super) fn intended(
     let open: Vec<f64> = (leaves.iter().zip(free))
         .map(|((_, leaf), free)| open(if free.is_told { &free.leaf } else { leaf }, vertices, size))
         .collect();
-    let meant = |(i, (((adds, leaf), free), open)): (usize, ((&(bool, Leaf), &Free), &f64))| {
+    let meant = |(i, (adds, leaf)): (usize, &(bool, Leaf))| {
         // By what a turn moves the ends: that is left open as well. Half-spaces reach all over.
         let reach = if leaf.reach() == DVec3::ZERO { 0.5 * size } else { leaf.reach().length() };
-        let within = (open / reach).min(TURNED);
-        let is_turned = free.is_told && (free.settled(leaf).0 > within || !is_settled(leaves, i));
-        (*adds, if is_turned { &free.leaf } else { leaf }.aligned(within))
+        let within = (open[i] / reach).min(TURNED);
+        let is_turned = free[i].is_told && (free[i].settled(leaf).0 > within || !is_settled(leaves, i));
+        (*adds, if is_turned { &free[i].leaf } else { leaf }.aligned(within))
     };
-    let mut meant: Leaves = leaves.iter().zip(free).zip(&open).enumerate().map(meant).collect();
+    let mut meant: Leaves = leaves.iter().enumerate().map(meant).collect();
     // How far each number may be moved, by leaves.
     let within: Vec<Vec<f64>> = (meant.iter().zip(&open))
         .map(|((_, leaf), open)| leaf.leverages().into_iter().map(|by| by * open).collect())

@@ -91,7 +91,7 @@ fn called(random: &mut Random, entry: &'static Entry, depth: usize) -> Option<Ca
     for (nth, operand) in call.operands.iter_mut().enumerate() {
         match operand {
             Part::Solid(solid) if entry.operands() != Operands::Length => {
-                let next = if nth == 0 && depth >= DEEP { depth - 1 } else { random.below(depth.min(DEEP).max(1)) };
+                let next = if nth == 0 && depth >= DEEP { depth - 1 } else { random.below(depth.clamp(1, DEEP)) };
                 *solid = match is_slow {
                     false => any(random, next)?,
                     true if is_rare => any(random, 0)?,
