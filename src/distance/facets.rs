@@ -75,7 +75,7 @@ impl Facets {
         let (near, middles): (Vec<usize>, Vec<DVec3>) = near.map(|(t, (p, _))| (t, p)).unzip();
         let mut on_face = vec![false; self.triangles.len()];
         for ((t, p), slope) in near.iter().zip(&middles).zip(slopes.at(&middles, run)?) {
-            on_face[*t] = gap(*p) < slope.distance();
+            on_face[*t] = gap(*p) < slope.newton().length();
         }
         let mut other = on_face.iter().map(|on_face| !on_face);
         self.triangles.retain(|_| other.next().unwrap_or(true));

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use super::compiled_with;
 use super::facets::{Facets, sharp};
-use super::quilt::{Care, GROSS, Quilt, Spot};
+use super::quilt::{Care, GROSS, MOST, Quilt, Spot};
 use crate::eval::{Region, as_leaf};
 use crate::mesh::Slopes;
 use crate::solid::Node;
@@ -29,6 +29,13 @@ const DEEPEST: u32 = 2;
 const CELLS: f64 = 8.0;
 const SPLITS: u32 = 4;
 
+/// So many boxes are meshed at a time: what is found is kept until all of them are.
+const AT_ONCE: usize = 16;
+
+/// The part of the patches that may still be added which one box may have for itself: hardly one has
+/// as many, and most are not near spots.
+const SHARE: usize = 8;
+
 /// Where the surface is there is a patch that is nearer than this, in cells.
 const NEAR: f64 = 1.0;
 
@@ -39,12 +46,13 @@ const MARGIN: f64 = 0.3;
 /// beyond them.
 const PART: f64 = 0.6;
 
-/// A mesh that patches were made of: the size of its cells, and how often its spots may be meshed
-/// anew.
+/// A mesh that patches were made of: the size of its cells, how often its spots may be meshed anew,
+/// and how many patches there may be then.
 #[derive(Clone, Copy)]
 struct Cells {
     size: f64,
     depth: u32,
+    most: usize,
 }
 
 /// Meshes the spots of a quilt anew that a mesh in such cells has left. Those that it does not mend
@@ -56,11 +64,11 @@ pub(super) fn mend(
     tolerance: f64,
     run: &Run,
 ) -> Result<(), Cancelled> {
-    mend_of(Cells { size: cell, depth: DEEPEST }, quilt, slopes, tolerance, run)
+    mend_of(Cells { size: cell, depth: DEEPEST, most: MOST }, quilt, slopes, tolerance, run)
 }
 
 fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<(), Cancelled> {
-    let Cells { size, depth } = cells;
+    let Cells { size, depth, most } = cells;
     let spots = std::mem::take(&mut quilt.spots);
     let worst = |numbers: &[usize]| numbers.iter().map(|n| spots[*n].off).fold(0.0, f64::max);
     let in_parts = |group: Group| match worst(&group.1) > GROSS * tolerance {
@@ -75,28 +83,33 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
         quilt.take_spots(spots);
         return Ok(());
     }
-    let mended = |(bounds, numbers): &Group| {
+    let mended = |(bounds, numbers): &Group, most: usize| {
         run.check()?;
         // In cells that are no smaller nothing would be seen that was not.
         let cell = bounds.longest_side() / CELLS;
         if cell > size {
             return Ok(None);
         }
-        let Some(mut part) = anew(slopes, bounds, tolerance, run)? else { return Ok(None) };
-        mend_of(Cells { size: cell, depth: depth - 1 }, &mut part, slopes, tolerance, run)?;
+        let care = Care { depth: SPLITS, most, ..Care::new(tolerance) };
+        let Some(mut part) = anew(slopes, bounds, care, run)? else { return Ok(None) };
+        mend_of(Cells { size: cell, depth: depth - 1, most }, &mut part, slopes, tolerance, run)?;
         let own: Vec<&Spot> = numbers.iter().map(|n| &spots[*n]).collect();
         part.keep_near(&own);
         Ok(covers(&part, &own, slopes, NEAR * cell, run)?.then_some(part))
     };
-    let found = groups.par_iter().map(mended).collect::<Result<Vec<Option<Quilt>>, Cancelled>>()?;
-    let worst: Vec<f64> = groups.iter().map(|(_, numbers)| worst(numbers)).collect();
-    let mut spots: Vec<Option<Spot>> = spots.into_iter().map(Some).collect();
-    for (((_, numbers), part), worst) in groups.iter().zip(found).zip(worst) {
-        match part {
-            Some(part) if part.error < worst => quilt.take_all(part),
-            _ => quilt.take_spots(numbers.iter().filter_map(|n| spots[*n].take()).collect()),
+    let mut left: Vec<usize> = Vec::new();
+    for groups in groups.chunks(AT_ONCE) {
+        let most = most.saturating_sub(quilt.len() + spots.len()) / SHARE;
+        let found = groups.par_iter().map(|group| mended(group, most));
+        for ((_, numbers), part) in groups.iter().zip(found.collect::<Result<Vec<Option<Quilt>>, Cancelled>>()?) {
+            match part {
+                Some(part) if part.error < worst(numbers) => quilt.take_all(part),
+                _ => left.extend(numbers),
+            }
         }
     }
+    let mut spots: Vec<Option<Spot>> = spots.into_iter().map(Some).collect();
+    quilt.take_spots(left.into_iter().filter_map(|n| spots[n].take()).collect());
     Ok(())
 }
 
@@ -164,7 +177,7 @@ fn covers(part: &Quilt, spots: &[&Spot], slopes: &Slopes<'_>, near: f64, run: &R
 }
 
 /// The surface in a box.
-fn anew(slopes: &Slopes<'_>, bounds: &Bounds, tolerance: f64, run: &Run) -> Result<Option<Quilt>, Cancelled> {
+fn anew(slopes: &Slopes<'_>, bounds: &Bounds, care: Care, run: &Run) -> Result<Option<Quilt>, Cancelled> {
     let cell = bounds.longest_side() / CELLS;
     let program = match slopes.program.narrow(&bounds.inflate(cell)) {
         Region::Surface(program) => program,
@@ -182,7 +195,7 @@ fn anew(slopes: &Slopes<'_>, bounds: &Bounds, tolerance: f64, run: &Run) -> Resu
     let mut facets = Facets::new(&mesh, |corners| !corners.iter().all(is_on));
     let slopes = Slopes { program: &program, precision: slopes.precision };
     facets.leave_faces(bounds, &slopes, &alone)?;
-    Quilt::new(facets, &slopes, Care { depth: SPLITS, ..Care::new(tolerance) }, &alone)
+    Quilt::new(facets, &slopes, care, &alone)
 }
 
 /// A mesh, if it can be made.

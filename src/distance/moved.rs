@@ -11,15 +11,16 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::surface_with;
-use crate::eval::{CompileError, Surface};
+use crate::eval::{Accuracy, CompileError, Surface};
 use crate::solid::Node;
-use crate::{Run, Solid};
+use crate::{Bounds, Run, Solid};
 use rvachev_field::{Patch, Patches};
 
 /// A matrix that is off a rotation by no more turns.
 const ROTATION: f64 = 1e-12;
 
-/// Middles of sides that are off straight ones by less than this part of the size are rounding.
+/// Middles of sides that are off straight ones by less than this part of the size, or of how far
+/// away they are, are rounding.
 const ROUNDING: f64 = 1e-13;
 
 /// A surface that was moved to where a solid is, kept with the solid.
@@ -40,7 +41,11 @@ pub(super) fn moved(solid: &Solid, run: &Run) -> Result<Option<Arc<Surface>>, Co
     }
     let patches = Patches::new(&turned(&surface.patches, &map), &to_move)?;
     let doubts = surface.doubts.iter().map(|(bounds, off)| (bounds.transformed(&map), *off)).collect();
-    let there = Surface::new(Arc::new(patches), surface.accuracy, None).in_doubt(surface.tolerance, doubts);
+    // A few roundings of coordinates as they are there, and as they were.
+    let far = farthest(&patches.bounds()).max(farthest(&surface.patches.bounds()));
+    let rounding = 4.0 * f64::EPSILON * far;
+    let accuracy = surface.accuracy.plus(Accuracy::of_surface(rounding, rounding));
+    let there = Surface::new(Arc::new(patches), accuracy, None).in_doubt(surface.tolerance + rounding, doubts);
     let there = Arc::new(there);
     solid.shelf().keep(Arc::new(Moved(there.clone())));
     run.report(1.0);
@@ -68,9 +73,15 @@ fn is_rigid(map: &DAffine3) -> bool {
     m.determinant() > 0.0 && (m.transpose() * m).abs_diff_eq(DMat3::IDENTITY, ROTATION)
 }
 
+/// How far a box reaches from the origin, along an axis.
+fn farthest(bounds: &Bounds) -> f64 {
+    if bounds.is_empty() { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() }
+}
+
 /// The patches where a rigid map takes them.
 fn turned(patches: &Patches, map: &DAffine3) -> Vec<Patch> {
-    let rounding = ROUNDING * patches.bounds().longest_side();
+    let bounds = patches.bounds();
+    let rounding = ROUNDING * farthest(&bounds).max(bounds.longest_side());
     let patch = |n: usize| {
         let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|at| patches.point(n, at));
         let middles = [[0.5, 0.0], [0.5, 0.5], [0.0, 0.5]].map(|at| patches.point(n, at));

@@ -28,12 +28,14 @@ pub(super) struct Care {
     pub(super) patience: f64,
     /// How often a patch is split at most.
     pub(super) depth: u32,
+    /// No patch is split if there would be more than so many.
+    pub(super) most: usize,
 }
 
 impl Care {
     /// As much as is done for all of a surface.
     pub(super) fn new(tolerance: f64) -> Care {
-        Care { tolerance, patience: f64::INFINITY, depth: 6 }
+        Care { tolerance, patience: f64::INFINITY, depth: 6, most: MOST }
     }
 }
 
@@ -43,8 +45,8 @@ const PLOT: usize = 1 << 14;
 /// After so many times it is seen whether splitting helps.
 const SOON: u32 = 3;
 
-/// No patch is split if there would be more than so many.
-const MANY: usize = 1 << 21;
+/// A surface has no more patches than so many, spots among them, unless its mesh has.
+pub(super) const MOST: usize = 1 << 21;
 
 /// A patch is split where its normal is off by more, in radians.
 const TURN: f64 = 0.03;
@@ -77,15 +79,21 @@ const BETWEEN: f64 = 1.5;
 pub(super) struct Quilt {
     pub(super) patches: Vec<Patch>,
     pub(super) error: f64,
-    /// The area of all, and of those that are farther off than this how far each is off, and its
-    /// area.
+    /// The area of all.
     area: f64,
     tolerance: f64,
-    far: Vec<[f64; 2]>,
     /// Patches that are far off.
     pub(super) spots: Vec<Spot>,
-    /// Boxes in which patches are farther off than the tolerance, or miss something, and how far.
-    doubts: Vec<(Bounds, f64)>,
+    /// Where patches are farther off than the tolerance, or miss something.
+    doubts: Vec<Doubt>,
+}
+
+/// A box in which patches are off, how far, and the area of those that are; 0 where they miss
+/// something.
+struct Doubt {
+    bounds: Bounds,
+    off: f64,
+    area: f64,
 }
 
 /// A patch that is far off, and how far.
@@ -121,7 +129,7 @@ impl Residual {
 impl Quilt {
     /// One that has these spots and nothing else, to be within a tolerance of the surface.
     pub(super) fn of(spots: Vec<Spot>, tolerance: f64) -> Quilt {
-        Quilt { patches: Vec::new(), error: 0.0, area: 0.0, tolerance, far: Vec::new(), spots, doubts: Vec::new() }
+        Quilt { patches: Vec::new(), error: 0.0, area: 0.0, tolerance, spots, doubts: Vec::new() }
     }
 
     /// Patches of triangles near the surface; `None` if more than this part of them is far off and
@@ -154,7 +162,7 @@ impl Quilt {
         plot: Plot,
         left: usize,
         slopes: &Slopes<'_>,
-        Care { tolerance, depth: last, .. }: Care,
+        Care { tolerance, depth: last, most, .. }: Care,
         run: &Run,
     ) -> Result<f64, Cancelled> {
         let mut seams = Seams::default();
@@ -168,7 +176,7 @@ impl Quilt {
                 Ok(piece.patch(&positions, &seams, tolerance))
             };
             let patches = pieces.iter().enumerate().map(patch).collect::<Result<Vec<Patch>, Cancelled>>()?;
-            let is_enough = self.patches.len() + left + 4 * pieces.len() > MANY;
+            let is_enough = self.len() + left + 4 * pieces.len() > most;
             let is_split = depth < last && !is_enough;
             let rims: Vec<f64> = pieces.iter().map(|piece| piece.rim(&seams)).collect();
             let is_off = |error: Residual| error.all() > tolerance || error.turn > TURN && error.off > 0.05 * tolerance;
@@ -181,9 +189,10 @@ impl Quilt {
             };
             let failing = pieces.iter().zip(&errors).filter(|(piece, error)| fails(piece, **error));
             cross(failing.map(|(piece, _)| piece), &positions, &mut seams, slopes, run)?;
-            if depth == SOON {
-                let split = pieces.iter().zip(&errors).zip(&patches);
-                far_off = split.filter(|((piece, error), _)| fails(piece, **error)).map(|(_, own)| area_of(own)).sum();
+            // What cannot be split any further is no nearer later on.
+            if depth == SOON || depth < SOON && is_enough {
+                let off = patches.iter().zip(&errors).filter(|(_, error)| is_off(**error));
+                far_off += off.map(|(own, _)| area_of(own)).sum::<f64>();
             }
             let mut next = Vec::new();
             for (number, ((piece, patch), error)) in pieces.iter().zip(patches).zip(errors).enumerate() {
@@ -207,6 +216,11 @@ impl Quilt {
         Ok(far_off)
     }
 
+    /// How many patches there are, spots among them.
+    pub(super) fn len(&self) -> usize {
+        self.patches.len() + self.spots.len()
+    }
+
     /// Takes a patch that is so far off.
     fn take(&mut self, patch: Patch, off: f64) {
         self.note(&patch, off);
@@ -215,7 +229,7 @@ impl Quilt {
         // One that is farther off than it is wide tells nothing of the surface.
         if off > ASTRAY * width {
             self.error = self.error.max(width);
-            self.doubts.push((patch.bounds().inflate(off.min(2.0 * width)), f64::INFINITY));
+            self.doubts.push(Doubt::missed(patch.bounds().inflate(off.min(2.0 * width))));
         } else {
             self.error = self.error.max(off);
             self.patches.push(patch);
@@ -236,17 +250,22 @@ impl Quilt {
         spots.into_iter().for_each(|spot| self.take(spot.patch, spot.off));
     }
 
-    /// Leaves out patches that are not near any of these spots, as far as spots may be off.
+    /// Leaves out patches that are not near any of these spots, as far as spots may be off, and
+    /// what is doubtful of them.
     pub(super) fn keep_near(&mut self, spots: &[&Spot]) {
         let near: Vec<Bounds> = spots.iter().map(|spot| spot.near(self.tolerance)).collect();
+        let is_near = |own: &Bounds| near.iter().any(|near| near.intersects(own));
         let mut area = self.area;
         self.patches.retain(|patch| {
-            let own = patch.bounds();
-            let is_near = near.iter().any(|near| near.intersects(&own));
+            let is_near = is_near(&patch.bounds());
             area -= if is_near { 0.0 } else { area_of(patch) };
             is_near
         });
         self.area = area;
+        self.doubts.retain(|doubt| is_near(&doubt.bounds));
+        // Many parts are kept before they are taken together.
+        self.patches.shrink_to_fit();
+        self.doubts.shrink_to_fit();
     }
 
     /// Takes all patches of another one.
@@ -254,7 +273,6 @@ impl Quilt {
         self.error = self.error.max(other.error);
         self.patches.extend(other.patches);
         self.area += other.area;
-        self.far.extend(other.far);
         self.spots.extend(other.spots);
         self.doubts.extend(other.doubts);
     }
@@ -262,27 +280,27 @@ impl Quilt {
     /// Tells of cells of some size that have more of the surface than the patches.
     pub(super) fn miss(&mut self, cells: Vec<Bounds>, size: f64) {
         self.error = self.error.max(size);
-        self.doubts.extend(cells.into_iter().map(|cell| (cell, f64::INFINITY)));
+        self.doubts.extend(cells.into_iter().map(Doubt::missed));
     }
 
     /// Boxes in which patches may be farther off than this, and how far.
     pub(super) fn doubts(&self, off: f64) -> Vec<(Bounds, f64)> {
-        self.doubts.iter().filter(|(_, own)| *own > off).copied().collect()
+        self.doubts.iter().filter(|own| own.off > off).map(|own| (own.bounds, own.off)).collect()
     }
 
     fn note(&mut self, patch: &Patch, off: f64) {
         let area = area_of(patch);
         self.area += area;
         if off > self.tolerance {
-            self.far.push([off, area]);
-            self.doubts.push((patch.bounds().inflate(off), off));
+            self.doubts.push(Doubt { bounds: patch.bounds().inflate(off), off, area });
         }
     }
 
     /// No more than this part of them, by area, is farther off than the result, which is no less
     /// than what they are to be within.
     pub(super) fn reached(&self, part: f64) -> f64 {
-        let mut far = self.far.clone();
+        let mut far: Vec<[f64; 2]> =
+            self.doubts.iter().filter(|own| own.area > 0.0).map(|own| [own.off, own.area]).collect();
         far.sort_by(|a, b| b[0].total_cmp(&a[0]));
         let of_spots: f64 = self.spots.iter().map(|spot| area_of(&spot.patch)).sum();
         let mut left = part * (self.area + of_spots);
@@ -293,6 +311,13 @@ impl Quilt {
             }
         }
         self.tolerance
+    }
+}
+
+impl Doubt {
+    /// Where something is missed.
+    fn missed(bounds: Bounds) -> Doubt {
+        Doubt { bounds, off: f64::INFINITY, area: 0.0 }
     }
 }
 
@@ -349,7 +374,7 @@ fn errors(
             for (n, found) in open.iter().zip(found.chunks(probes.len())) {
                 let (patch, error) = (&patches[*n], &mut errors[*n]);
                 for (b, slope) in probes.iter().zip(found) {
-                    error.off = error.off.max(BETWEEN * slope.distance());
+                    error.off = error.off.max(BETWEEN * slope.distance_of(patch.bounds().longest_side()));
                     let turn = patch.normal(*b).angle_between(slope.normal());
                     error.turn = error.turn.max(if turn.is_finite() { turn } else { 0.0 });
                 }

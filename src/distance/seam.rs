@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::crease::{Plane, meet};
 use super::facets::CREASE;
-use crate::mesh::{Slope, Slopes};
+use crate::mesh::Slopes;
 use crate::{Cancelled, Run};
 
 /// How far from a crease its sides are looked at, in parts of the side's length: from farther off
@@ -272,7 +272,8 @@ impl Seams {
             let points: Vec<DVec3> = numbers.iter().map(|n| self.list[*n].at(along, positions)).collect();
             for (number, slope) in numbers.iter().zip(slopes.at(&points, run)?) {
                 let seam = &mut self.list[*number];
-                seam.off = seam.off.max(slope.distance());
+                let [from, to] = seam.ends.map(|v| positions[v as usize]);
+                seam.off = seam.off.max(slope.distance_of(from.distance(to)));
             }
         }
         Ok(())
@@ -330,15 +331,16 @@ impl Seams {
             for ((number, points), found) in numbers.iter().zip(points.chunks(2)).zip(found.chunks(2)) {
                 let planes: Vec<Plane> = points.iter().zip(found).filter_map(|(p, s)| Plane::of(*p, s)).collect();
                 let seam = &mut self.list[*number];
+                let [from, to] = seam.ends.map(|v| positions[v as usize]);
+                let length = from.distance(to);
                 let off = match &planes[..] {
                     [a, b] if a.normal.distance(b.normal) > CREASE => {
                         let at = seam.at(along, positions);
-                        let [from, to] = seam.ends.map(|v| positions[v as usize]);
-                        meet(&planes, at).distance(at).min(STRIDE * from.distance(to))
+                        meet(&planes, at).distance(at).min(STRIDE * length)
                     }
                     // Where both faces are one, nothing tells where the crease is, but that it is
                     // on the surface.
-                    _ => found.iter().map(Slope::distance).fold(f64::INFINITY, f64::min),
+                    _ => found.iter().map(|slope| slope.distance_of(length)).fold(f64::INFINITY, f64::min),
                 };
                 seam.off = seam.off.max(off);
             }

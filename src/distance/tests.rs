@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::facets::{Facets, sharp};
 use super::mend::mend;
 use super::plots::Plots;
-use super::quilt::{Quilt, Spot};
+use super::quilt::{Care, Quilt, Spot};
 use super::surface::FromMeshes;
 use super::{compiled, surface_of};
 use crate::eval::{Wanted, surface};
@@ -151,6 +151,36 @@ fn spots_that_small_cells_do_not_show_are_kept_and_told() {
     let slopes = Slopes { program: &programs.surface, precision: 1e-3 };
     mend(&mut quilt, &slopes, 1.0, 1e-3, &Run::default()).unwrap();
     assert!(!quilt.patches.is_empty() && quilt.error >= OFF, "{} patches, {}", quilt.patches.len(), quilt.error);
+}
+
+/// Where there are too many patches to see whether splitting helps, it does not.
+#[test]
+fn patches_are_no_more_than_they_may_be() {
+    let solid = Solid::superellipsoid([1.0, 0.7, 0.5], 0.4, 1.7).twist(deg(60.0));
+    let programs = compiled(&solid).unwrap();
+    let (slopes, run) = (Slopes { program: &programs.surface, precision: 1e-6 }, Run::default());
+    let mesh = sharp(&programs.surface, programs.bounds, 0.2, &run).unwrap();
+    let count = mesh.triangles().len();
+    let quilt = |most: usize, patience: f64| {
+        let care = Care { most, patience, ..Care::new(1e-6) };
+        Quilt::new(Facets::new(&mesh, |_| true), &slopes, care, &run).unwrap()
+    };
+    for most in [count, 5 * count, 40 * count] {
+        let found = quilt(most, f64::INFINITY).unwrap();
+        assert!(found.len() <= most, "{} for {most} of {count}", found.len());
+        assert!(!found.spots.is_empty(), "nothing is off with {most}");
+        assert!(quilt(most, 5e-3).is_none(), "{most} of {count} do");
+    }
+}
+
+#[test]
+fn nothing_is_doubtful_of_patches_that_were_left_out() {
+    let at = |x: f64| Patch::flat([DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + x * DVec3::X));
+    let mut quilt = Quilt::of(Vec::new(), 1e-3);
+    quilt.add_all([(at(0.0), 2e-3), (at(10.0), 5e-3)].into_iter());
+    assert_eq!((quilt.doubts(1e-3).len(), quilt.reached(1e-4)), (2, 5e-3));
+    quilt.keep_near(&[&Spot { patch: at(0.5), off: 0.1 }]);
+    assert_eq!((quilt.patches.len(), quilt.doubts(1e-3).len(), quilt.reached(1e-4)), (1, 1, 2e-3));
 }
 
 #[test]

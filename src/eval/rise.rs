@@ -227,7 +227,9 @@ impl Program {
             }
             steepest(self.leaf(part.leaf, self.in_frame(&frames, *frame, p)).d)
         };
-        parts.iter().map(of_part).fold(0.0, f64::max)
+        // Where a slope is not told, it may be any.
+        let steeper = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
+        parts.iter().map(of_part).fold(0.0, steeper)
     }
 
     /// No radius of curvature of the surface is less than this; 0 where it may have creases. It is

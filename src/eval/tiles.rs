@@ -1,11 +1,12 @@
 //! The distance to a surface without end, measured tile by tile where it is asked for.
 //!
-//! A tile's surface is found when a point of it is first asked about, and kept. It is found as far
+//! A tile's surface is found when a point of it is first asked about, and kept, unless so much is
+//! asked about later that all would take too much memory. It is found as far
 //! around the tile as lengths reach, so distances beyond that are no more than bounds. No lock is
 //! held while a tile is made: two threads may make the same one, and the first is kept. Of a
 //! surface that repeats, as lattices do, the tiles of one cell are made.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::fmt;
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -27,6 +28,37 @@ const SIDE: f64 = 8.0;
 
 /// Ranges over more tiles than this are not told.
 const MANY: usize = 8;
+
+/// So many bytes of tiles are kept.
+const KEPT: usize = 1 << 30;
+
+/// The surfaces of tiles, the earliest first.
+#[derive(Default)]
+struct Made {
+    surfaces: HashMap<Key, Arc<SurfaceDistance>>,
+    order: VecDeque<Key>,
+    bytes: usize,
+}
+
+impl Made {
+    /// The surface of a tile, which is kept, if none is known; the earliest are left out where all
+    /// take more than so many bytes.
+    fn keep(&mut self, key: Key, surface: SurfaceDistance, most: usize) -> Arc<SurfaceDistance> {
+        if let Some(known) = self.surfaces.get(&key) {
+            return known.clone();
+        }
+        let surface = Arc::new(surface);
+        self.bytes += surface.patches().bytes();
+        self.surfaces.insert(key, surface.clone());
+        while self.bytes > most
+            && let Some(earliest) = self.order.pop_front()
+        {
+            self.bytes -= self.surfaces.remove(&earliest).map_or(0, |left| left.patches().bytes());
+        }
+        self.order.push_back(key);
+        surface
+    }
+}
 
 /// A tile's surface, and how far it is moved to where it is asked for.
 #[derive(Clone)]
@@ -67,7 +99,7 @@ pub(super) struct Tiles {
     pub(super) source: &'static dyn DistanceSource,
     period: Option<DMat3>,
     tiling: Tiling,
-    made: RwLock<HashMap<Key, Arc<SurfaceDistance>>>,
+    made: RwLock<Made>,
 }
 
 impl fmt::Debug for Tiles {
@@ -104,7 +136,7 @@ impl Tiles {
     /// The tile with a number.
     fn tile(&self, key: Key) -> Tile {
         let Representative { of, by } = self.tiling.copy(key);
-        if let Some(surface) = self.made.read().unwrap_or_else(PoisonError::into_inner).get(&of) {
+        if let Some(surface) = self.made.read().unwrap_or_else(PoisonError::into_inner).surfaces.get(&of) {
             return Tile { surface: surface.clone(), by };
         }
         let region = self.tiling.region(of);
@@ -118,9 +150,9 @@ impl Tiles {
                 Err(_) => unreachable!("nobody has the token"),
             },
         };
-        let surface = Arc::new(SurfaceDistance::new(patches, self.sign.clone(), error, None, self.bounds));
+        let surface = SurfaceDistance::new(patches, self.sign.clone(), error, None, self.bounds);
         let mut made = self.made.write().unwrap_or_else(PoisonError::into_inner);
-        Tile { surface: made.entry(of).or_insert(surface).clone(), by }
+        Tile { surface: made.keep(of, surface, KEPT), by }
     }
 
     fn at(&self, p: DVec3) -> Tile {
@@ -308,6 +340,26 @@ mod tests {
         }
         let measured = measured(&solid).unwrap();
         let tiles = (&*measured.field as &dyn Any).downcast_ref::<Tiles>().unwrap();
-        assert!(tiles.made.read().unwrap().len() <= 8);
+        assert!(tiles.made.read().unwrap().surfaces.len() <= 8);
+    }
+
+    #[test]
+    fn of_tiles_that_take_much_the_earliest_are_left_out() {
+        let sign: Arc<dyn AnyField> = Arc::new(crate::Sphere { radius: 1.0 });
+        let surface = || {
+            let patches = [rvachev_field::Patch::flat([DVec3::X, DVec3::Y, DVec3::Z])];
+            let patches = Arc::new(Patches::new(&patches, &Run::default()).unwrap());
+            SurfaceDistance::new(patches, sign.clone(), 0.0, None, Bounds::ALL)
+        };
+        let (mut made, one) = (Made::default(), surface().patches().bytes());
+        for key in 0..5 {
+            let first = made.keep([key; 3], surface(), 3 * one);
+            assert!(Arc::ptr_eq(&first, &made.keep([key; 3], surface(), 3 * one)));
+        }
+        assert_eq!((made.bytes, made.order.len()), (3 * one, 3));
+        assert!((0..5).all(|key| made.surfaces.contains_key(&[key; 3]) == (key >= 2)));
+        // The one that is asked for is never too much.
+        made.keep([7; 3], surface(), 0);
+        assert_eq!((made.bytes, made.surfaces.len()), (one, 1));
     }
 }

@@ -36,12 +36,20 @@ impl Slope {
     /// The step to where a linear function of this value and gradient is 0.
     pub(crate) fn newton(&self) -> DVec3 {
         let square = self.gradient.length_squared();
-        if square > 1e-24 { -self.value / square * self.gradient } else { DVec3::ZERO }
+        let is_told = square > 1e-24 && square.is_finite() && self.value.is_finite();
+        if is_told { -self.value / square * self.gradient } else { DVec3::ZERO }
     }
 
-    /// How far that is.
+    /// How far that is; infinitely where the value or its gradient is not finite.
     pub(crate) fn distance(&self) -> f64 {
-        self.newton().length()
+        let is_finite = self.value.is_finite() && self.gradient.is_finite();
+        if is_finite { self.newton().length() } else { f64::INFINITY }
+    }
+
+    /// The same of something that is to be on the surface: as far as it is long where nothing is told.
+    pub(crate) fn distance_of(&self, length: f64) -> f64 {
+        let distance = self.distance();
+        if distance.is_finite() { distance } else { length }
     }
 
     /// The outward unit normal; 0 where there is no gradient.
@@ -98,14 +106,14 @@ impl Slopes<'_> {
                 tasks.push(Task { numbers, bounds, program });
                 continue;
             }
-            let centre = bounds.center();
+            let (centre, count) = (bounds.center(), numbers.len());
             let mut parts: [Vec<u32>; 8] = Default::default();
             for number in numbers {
                 let above = points[number as usize].cmpgt(centre);
                 parts[above.bitmask() as usize].push(number);
             }
-            // All at one place.
-            if bounds.longest_side() == 0.0 {
+            // All at one place, or so near to it that no number is between them.
+            if parts.iter().any(|part| part.len() == count) {
                 let numbers = parts.into_iter().flatten().collect();
                 tasks.push(Task { numbers, bounds, program });
                 continue;
@@ -123,14 +131,14 @@ impl Slopes<'_> {
 
     fn of_task(&self, task: &Task, points: &[DVec3], run: &Run) -> Result<Vec<Slope>, Cancelled> {
         let tape = Tape::new(&task.program, &task.bounds);
+        let exact = |(i, number): (usize, &u32)| {
+            if i.is_multiple_of(OFTEN) {
+                run.check()?;
+            }
+            let (value, gradient) = task.program.gradient(points[*number as usize]);
+            Ok(Slope { value, gradient })
+        };
         if tape.roundoff() > self.precision {
-            let exact = |(i, number): (usize, &u32)| {
-                if i.is_multiple_of(OFTEN) {
-                    run.check()?;
-                }
-                let (value, gradient) = task.program.gradient(points[*number as usize]);
-                Ok(Slope { value, gradient })
-            };
             return task.numbers.iter().enumerate().map(exact).collect();
         }
         let axis = |axis: usize| -> Vec<f32> {
@@ -144,6 +152,60 @@ impl Slopes<'_> {
             value: f64::from(out[0][i]),
             gradient: DVec3::new(f64::from(out[1][i]), f64::from(out[2][i]), f64::from(out[3][i])),
         };
-        Ok((0..x.len()).map(slope).collect())
+        // Where the value rises slowly its rounding is a longer way.
+        let tells = |slope: &Slope| slope.gradient.length() * self.precision >= tape.roundoff();
+        let slopes = task.numbers.iter().enumerate().map(|(i, number)| {
+            let slope = slope(i);
+            if tells(&slope) { Ok(slope) } else { exact((i, number)) }
+        });
+        slopes.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Solid;
+    use crate::distance::compiled;
+
+    #[cfg(feature = "formula")]
+    #[test]
+    fn slow_values_are_as_near_as_lengths_are_to_be() {
+        // The ball (1 - |p|²) / 1000, away from the origin, where single precision is coarse.
+        let text = "a var-x\nb var-y\nc var-z\nm const 300\no const 1\nk const 0.001\nd sub a m\nx square d\n\
+                    y square b\nz square c\ns add x y\nt add s z\nu sub o t\nv mul u k\n";
+        let bounds = Bounds::from_center(DVec3::X * 300.0, DVec3::splat(1.0));
+        let solid = Solid::from(crate::Formula::from_vm(text, bounds).unwrap());
+        let program = &compiled(&solid).unwrap().surface;
+        let precision = 1.01 * Tape::new(program, &bounds).roundoff();
+        let points: Vec<DVec3> = (0..200)
+            .map(|n| DVec3::X * 300.0 + DVec3::new(0.6, 0.0, 0.0) + DVec3::splat(1e-3 * f64::from(n)))
+            .collect();
+        let found = Slopes { program, precision }.at(&points, &Run::default()).unwrap();
+        for (p, slope) in points.iter().zip(found) {
+            let (value, gradient) = program.gradient(*p);
+            let off = (slope.distance() - Slope { value, gradient }.distance()).abs();
+            assert!(off < precision, "{off} at {p}, of {precision}");
+        }
+    }
+
+    #[test]
+    fn points_that_no_number_is_between_are_one_task() {
+        let ball = |x: f64| Solid::sphere(0.5).translate([x, 0.0, 0.0]);
+        let solid = ball(0.0) | ball(1.0) | ball(2.0);
+        let program = &compiled(&solid).unwrap().surface;
+        let near = |n: u32| DVec3::new(1.0 + f64::EPSILON * f64::from(1 + n % 2), 0.5, 0.0);
+        let points: Vec<DVec3> = (0..600).map(near).collect();
+        let found = Slopes { program, precision: 1e-3 }.at(&points, &Run::default()).unwrap();
+        assert!(found.iter().all(|slope| slope.distance() < 1e-3));
+    }
+
+    #[test]
+    fn what_is_not_finite_is_far() {
+        for (value, gradient) in [(1.0, DVec3::INFINITY), (f64::NAN, DVec3::X), (0.0, DVec3::NAN)] {
+            let slope = Slope { value, gradient };
+            assert_eq!((slope.distance(), slope.distance_of(2.0)), (f64::INFINITY, 2.0), "{slope:?}");
+            assert_eq!(slope.newton(), DVec3::ZERO, "{slope:?}");
+        }
     }
 }
