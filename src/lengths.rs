@@ -2,8 +2,8 @@
 //!
 //! The distance of a point is that to the nearest point of the surface, positive inside. All
 //! lengths are in terms of it, whatever a solid is made of and whatever its
-//! [values](crate#what-values-mean) are. With `r` a length and `d` the distance to the surface of
-//! `s`:
+//! [values](crate::conventions#what-values-mean) are. With `r` a length and `d` the distance to the
+//! surface of `s`:
 //!
 //! | verb | what is in it | what becomes of the surface |
 //! |---|---|---|
@@ -243,7 +243,7 @@
 //!
 //! | of | inside | outside |
 //! |---|---|---|
-//! | leaves by [distance](crate#what-values-mean) | yes | yes |
+//! | leaves by [distance](crate::conventions#what-values-mean) | yes | yes |
 //! | a union | no | if it is of all operands |
 //! | an intersection | if it is of all operands | no |
 //! | a difference `a - b` | if it is of `a` inside and of `b` outside | no |

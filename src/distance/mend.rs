@@ -32,8 +32,8 @@ const SPLITS: u32 = 4;
 /// So many boxes are meshed at a time: what is found is kept until all of them are.
 const AT_ONCE: usize = 16;
 
-/// The part of the patches that may still be added which one box may have for itself: hardly one has
-/// as many, and most are not near spots.
+/// The part of the patches that may still be added which one box may have for itself: hardly one
+/// has as many, and most are not near spots.
 const SHARE: usize = 8;
 
 /// Where the surface is there is a patch that is nearer than this, in cells.

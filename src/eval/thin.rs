@@ -32,8 +32,8 @@ impl Program {
         self.nodes.iter().filter_map(Node::valued_by).all(|leaf| self.instance(leaf).frame == 0)
     }
 
-    /// By how much the value of gentle leaves changes per length unit in a box at most: by more than
-    /// 1 where they are deformed. Of others it is not told.
+    /// By how much the value of gentle leaves changes per length unit in a box at most: by more
+    /// than 1 where they are deformed. Of others it is not told.
     pub(crate) fn slope_within(&self, region: &Bounds) -> f64 {
         match (self.has_gentle_leaves(), self.is_unbent()) {
             (true, true) => 1.0,

@@ -46,7 +46,8 @@ impl Slope {
         if is_finite { self.newton().length() } else { f64::INFINITY }
     }
 
-    /// The same of something that is to be on the surface: as far as it is long where nothing is told.
+    /// The same of something that is to be on the surface: as far as it is long where nothing is
+    /// told.
     pub(crate) fn distance_of(&self, length: f64) -> f64 {
         let distance = self.distance();
         if distance.is_finite() { distance } else { length }
@@ -171,8 +172,8 @@ mod tests {
     #[cfg(feature = "formula")]
     #[test]
     fn slow_values_are_as_near_as_lengths_are_to_be() {
-        // The ball (1 - |p|²) / 1000, away from the origin, where single precision is coarse.
-        let text = "a var-x\nb var-y\nc var-z\nm const 300\no const 1\nk const 0.001\nd sub a m\nx square d\n\
+        // The ball (1 - |p|²) / 10⁶, away from the origin, where single precision is coarse.
+        let text = "a var-x\nb var-y\nc var-z\nm const 300\no const 1\nk const 0.000001\nd sub a m\nx square d\n\
                     y square b\nz square c\ns add x y\nt add s z\nu sub o t\nv mul u k\n";
         let bounds = Bounds::from_center(DVec3::X * 300.0, DVec3::splat(1.0));
         let solid = Solid::from(crate::Formula::from_vm(text, bounds).unwrap());

@@ -61,9 +61,10 @@ impl Solid {
     /// [`bounds`](Solid::bounds): where that is larger than the solid, as behind deformations, the
     /// solid hovers.
     ///
-    /// The solid is compiled for its box, which takes long where it is large or has much to measure.
-    /// [Prepare](Solid::prepare) it first to do that on a [`Run`](crate::Run) that tells how far it
-    /// is and may be cancelled: what is prepared has its box, and moving it takes no time.
+    /// The solid is compiled for its box, which takes long where it is large or has much to
+    /// measure. [Prepare](Solid::prepare) it first to do that on a [`Run`](crate::Run) that tells
+    /// how far it is and may be cancelled: what is prepared has its box, and moving it takes no
+    /// time.
     ///
     /// ```
     /// use rvachev::{Run, Solid, rad};

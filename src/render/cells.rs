@@ -316,8 +316,8 @@ impl Cell {
         })
     }
 
-    /// The operands of a union of a few concave values, and perhaps of an expensive one behind them,
-    /// each in its part of the cell; they are made when they are first asked for.
+    /// The operands of a union of a few concave values, and perhaps of an expensive one behind
+    /// them, each in its part of the cell; they are made when they are first asked for.
     pub(super) fn united(&self) -> Option<&[Cell]> {
         let parts = self.united.get_or_init(|| {
             if self.leaves > UNITED {

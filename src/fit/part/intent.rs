@@ -7,11 +7,11 @@
 //!     box: turned by .0001                      not turned
 //! ```
 //!
-//! Axes were settled when leaves were found; what vertices tell to be turned farther than they leave
-//! open is turned back. What is not round, but equal to another number, becomes that one. Vertices judge: a number is
-//! moved by no more than they leave open. A cut that ends where there is nothing left to cut is
-//! lengthened to a round number, as an end in a face would leave a skin there, or not, by the last
-//! digit.
+//! Vertices judge: nothing is moved by more than they leave open. Axes were settled when leaves were
+//! found; where vertices tell more of a turn than they leave open, the leaf is turned. A number that
+//! is not round, but equal to another one, becomes that one. A cut that ends where there is nothing
+//! left to cut is lengthened to a round number, as an end in a face would leave a skin there, or
+//! not, by the last digit.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -275,6 +275,29 @@ mod tests {
         assert!(pocket[2] < -30.6, "{pocket:?}");
         assert!(
             changes.iter().any(|change| change.leaf == 1 && change.measure == Measure::Diameter && change.to == 7.0)
+        );
+    }
+
+    /// A turn is only told of axes that were made those of coordinates, or of another leaf.
+    #[test]
+    fn turns_of_what_is_oblique_to_all_are_not_told() {
+        let axis = DVec3::new(0.48, 0.6, 0.64);
+        let rod = |x: f64, axis: DVec3| (true, Leaf::cylinder(axis, DVec3::X * x, 2.0, [-10.0, 10.0]));
+        let told = |axes: [DVec3; 2]| {
+            let leaves = [rod(-9.3, axes[0]), rod(8.1, axes[1])];
+            let turn = DMat3::from_axis_angle(axis.any_orthonormal_vector(), 1e-3);
+            let free = leaves.each_ref().map(|(_, leaf)| Free {
+                leaf: Leaf { rotation: turn * leaf.rotation, ..leaf.clone() },
+                is_told: false,
+            });
+            let changes = intended(&leaves, &free, &[], 70.0, &Run::default()).unwrap().1;
+            changes.into_iter().filter(|change| change.measure == Measure::Turn).count()
+        };
+        let other = DVec3::new(0.6, 0.64, -0.48);
+        let across = axis.cross(axis.any_orthonormal_vector());
+        assert_eq!(
+            [told([axis, other]), told([axis, axis]), told([axis, across]), told([axis, DVec3::Z])],
+            [0, 2, 2, 1]
         );
     }
 

@@ -346,6 +346,10 @@ mod tests {
                 let tilted = Leaf { rotation: off * leaf.rotation, ..leaf.clone() };
                 let aligned = tilted.aligned(0.01);
                 assert_same(&tilted, &aligned.turned_by(&tilt(&tilted, &aligned)));
+                // What is found free may have another centre, as a half-space that is turned about what is
+                // seen of it.
+                let moved = Leaf { centre: tilted.centre + DVec3::new(0.01, -0.02, 0.005), ..tilted.clone() };
+                assert_same(&moved, &aligned.turned_by(&tilt(&moved, &aligned)));
                 let solid = aligned.solid();
                 let p = leaf.centre + DVec3::new(0.03, -0.05, 0.02);
                 assert_eq!(solid.contains(p).unwrap(), leaf.contains(p), "{} along {axis}", leaf.kind());

@@ -97,21 +97,22 @@ use crate::geom::{Mesh, PointCloud};
 /// Leaves in question are made of these, with all ends that they may have; boxes between parallel
 /// planes; extruded sections as outlines of straight sides and arcs, rounded rectangles, regular
 /// prisms and supershapes, and their bays, which are cut; and superellipsoids and supershapes of
-/// what hangs together without a crease. Directions within 0.01° of an axis of coordinates are
-/// along it; within 0.8° where facets are small, and 1° of points. A search over ordered trees
-/// takes those leaves that mend more than their parameters
-/// [cost](PartSettings::parameter_cost), of equal leaves all but the first at a lower price. Where
-/// that takes 4 to 16 leaves it is done again with leaves that are dearer, so that few and large
-/// ones come first, and the better tree is taken. Leaves are fitted to the samples. While more than
-/// half a hundredth of the volume is wrong, leaves are looked for where it is, twice at the most.
-/// Then leaves are laid through the vertices of the mesh where these tell their lengths exactly:
-/// the radius of a cylinder of facets is that of its corners. Numbers that are round within what
-/// the vertices leave open, in millimetres or in binary fractions of an inch, become so, and cuts
-/// that end in the open go through: see [`snaps`](PartFit::snaps). What of this would take genus or
-/// shells farther from the mesh's is not done, as far as these are known. Leaves are left out that
-/// mend little and spoil genus or shells. Equal leaves on a line, a ring or a grid are
-/// [patterns](PartFit::patterns). Pictures, code and limits are on [a page of their
-/// own](crate::parts).
+/// what hangs together without a crease. Directions that are off an axis of coordinates by less
+/// than 0.01° are along it; where facets are small, or of points, so are those that are off by no
+/// more than samples leave open, and by 0.8° or 1° at the most. Vertices that tell a direction
+/// exactly have the last word. A search over ordered trees takes those leaves that mend more than
+/// their parameters [cost](PartSettings::parameter_cost), of equal leaves all but the first at a
+/// lower price. Where that takes 4 to 16 leaves it is done again with leaves that are dearer, so
+/// that few and large ones come first, and the better tree is taken. Leaves are fitted to the
+/// samples. While more than half a hundredth of the volume is wrong, leaves are looked for where it
+/// is, twice at the most. Then leaves are laid through the vertices of the mesh where these tell
+/// their lengths exactly: the radius of a cylinder of facets is that of its corners. Numbers that
+/// are round within what the vertices leave open, in millimetres or in binary fractions of an inch,
+/// become so, and cuts that end in the open go through: see [`snaps`](PartFit::snaps). What of this
+/// would take genus or shells farther from the mesh's is not done, as far as these are known.
+/// Leaves are left out that mend little and spoil genus or shells. Equal leaves on a line, a ring
+/// or a grid are [patterns](PartFit::patterns). Pictures, code and limits are on
+/// [a page of their own](crate::parts).
 ///
 /// The mesh may be in pieces and its triangles may overlap; inside is where the winding number is
 /// above ½. The result depends on mesh and settings only, not on the number of threads.

@@ -182,3 +182,37 @@ pub(super) fn fitted<T: Copy>(
     }
     leaf
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::super::leaf::Shape;
+    use super::*;
+    use crate::{MeshSettings, Prism, Superellipsoid};
+
+    /// Samples tell of settled axes only: what is turned by every fit, and about its own axis, stays
+    /// as it was fitted.
+    #[test]
+    fn samples_tell_turns_of_settled_axes() {
+        let oblique = DMat3::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.7);
+        let off = DMat3::from_axis_angle(DVec3::new(0.6, 0.8, 0.0), 0.01);
+        let found = |shape: Shape, off: DMat3| {
+            let truth = Leaf { shape, rotation: oblique * off, centre: DVec3::new(3.0, -1.0, 2.0) };
+            let mesh = truth.solid().mesh(&MeshSettings::default()).unwrap();
+            let samples = Samples::of_mesh(&mesh, 0, &Run::default()).unwrap();
+            let settled = Leaf { rotation: oblique, ..truth.clone() }.inward(samples.centre, samples.size);
+            let free = turned(&[(true, settled.clone())], &samples, &Run::default()).unwrap().swap_remove(0);
+            let angle =
+                |a: &Leaf, b: &Leaf| (a.rotation - b.rotation).to_cols_array().map(|x| x * x).iter().sum::<f64>();
+            [angle(&free, &settled), angle(&free, &truth)].map(|square| (0.5 * square).sqrt())
+        };
+        let prism = || Shape::Prism(Prism::new(6, 5.0, 8.0));
+        let tilted = found(prism(), off);
+        assert!(tilted[0] > 0.009 && tilted[1] < 2e-4, "{tilted:?}");
+        let about_itself = found(prism(), DMat3::from_rotation_z(0.01));
+        assert!(about_itself[0] < 2e-4, "{about_itself:?}");
+        let round = found(Shape::Superellipsoid(Superellipsoid::new([5.0, 3.0, 2.0], 0.5, 0.7)), off);
+        assert_eq!(round[0], 0.0);
+    }
+}

@@ -77,7 +77,8 @@ pub struct Snap {
     /// Which of the [leaves](PartFit::leaves).
     pub leaf: usize,
     /// What the number is: "diameter", "radius" or "size"; "x", "y" or "z": where the leaf is, or
-    /// ends, along its own axes; or "turn": the angle by which it was off the axes that it was settled along.
+    /// ends, along its own axes; or "turn": the angle by which it was off the axes that it was
+    /// settled along.
     pub measure: &'static str,
     /// What was found, in length units; of a turn in degrees.
     pub found: f64,
@@ -102,8 +103,8 @@ impl PartFit {
     /// part's axes, each other's, or square to these, by less than vertices or samples leave open.
     /// Numbers are not changed, and leaves that they leave nothing to do for not left out, where
     /// that would take genus or shells farther from the input's, as far as these are known: of
-    /// points, or an open mesh, they are not, and what is smaller than a 128th of the part's longest
-    /// side may be missed.
+    /// points, or an open mesh, they are not, and what is smaller than a 128th of the part's
+    /// longest side may be missed.
     #[must_use]
     pub fn snaps(&self) -> &[Snap] {
         &self.snaps

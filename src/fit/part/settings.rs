@@ -28,10 +28,10 @@ pub struct PartSettings {
     pub noise: f64,
     /// Whether leaves are laid through the vertices of the mesh where these tell them exactly. The
     /// radius of a cylinder of facets is then that of its corners, as it was meant, though a
-    /// smaller one has more volume in common with the facets. Then axes are settled, numbers
-    /// made round, and cuts go through: see [`PartFit::snaps`](super::PartFit::snaps). Of points
-    /// nothing is made round, but axes are settled, and cuts that leave a skin no thicker than noise
-    /// go through. If `false`, axes are left as vertices and samples tell them. Default: `true`.
+    /// smaller one has more volume in common with the facets. Then axes are settled, numbers made
+    /// round, and cuts go through: see [`PartFit::snaps`](super::PartFit::snaps). Of points nothing
+    /// is made round, but axes are settled, and cuts that leave a skin no thicker than noise go
+    /// through. If `false`, axes are left as vertices and samples tell them. Default: `true`.
     pub snap: bool,
 }
 

@@ -193,8 +193,8 @@ mod tests {
     use crate::distance::{compiled, surface_of};
     use crate::eval::Surface;
 
-    /// What is told of two balls that are 1 apart, whose patches are those of balls that are smaller
-    /// by .1 each, in doubt all over: in so many boxes each.
+    /// What is told of two balls that are 1 apart, whose patches are those of balls that are
+    /// smaller by .1 each, in doubt all over: in so many boxes each.
     fn told(boxes: usize, loss: f64) -> f64 {
         let by = 0.1;
         let balls = [0.0, 3.0].map(|x| Solid::sphere(1.0).translate([x, 0.0, 0.0]));

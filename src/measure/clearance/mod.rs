@@ -106,13 +106,13 @@ impl Solid {
     ///
     /// Each surface takes as long as a mesh, once: solids that are moved or turned have that of the
     /// solid at rest, so that parts of an assembly are not measured anew in each position. After
-    /// that a clearance takes milliseconds where one place is nearest, some tenths of a second where
-    /// a gap is even all over, and seconds between threads and the like. The volume of an overlap is
-    /// found as by [`measure`](Solid::measure).
+    /// that a clearance takes milliseconds where one place is nearest, some tenths of a second
+    /// where a gap is even all over, and seconds between threads and the like. The volume of an
+    /// overlap is found as by [`measure`](Solid::measure).
     ///
     /// # Errors
-    /// What is wrong with a solid, that it has no finite box, that it is so thin that nothing of its
-    /// surface is found ([`SolidError::Surface`]), or that the work was cancelled.
+    /// What is wrong with a solid, that it has no finite box, that it is so thin that nothing of
+    /// its surface is found ([`SolidError::Surface`]), or that the work was cancelled.
     pub fn clearance(&self, other: &Solid, run: &Run) -> Result<Option<Clearance>, PrepareError> {
         let run = run.stage(0.0, 1.0);
         let found = run.install(|| self.clearance_on(other, &run))?;

@@ -247,8 +247,8 @@ impl Chains<'_> {
         End { point, slope }
     }
 
-    /// What decides about a point that is in a square, or beside it: there the contour may go on for
-    /// a while.
+    /// What decides about a point that is in a square, or beside it: there the contour may go on
+    /// for a while.
     fn filling<'b>(&'b self, leaf: &'b Leaf, p: DVec2) -> &'b Filling {
         let from_low = p - leaf.square.low;
         let is_in = from_low.min_element() >= 0.0 && from_low.max_element() <= leaf.square.side;
