@@ -113,7 +113,10 @@ mod tests {
             assert!((a.distance - b.distance).abs() < 1e-6);
             assert!(map.transform_vector3(a.normal).distance(b.normal) < 1e-4);
         }
-        // A box stays flat; what is stretched or mirrored is measured itself.
+        // Far away coordinates are rounded.
+        let far = surface_with(&still.translate([1e8, 0.0, 0.0]), &Run::default()).unwrap();
+        assert!(far.tolerance > own.tolerance + 1e8 * f64::EPSILON && far.accuracy.error > own.accuracy.error);
+        // What is moved is told whatever it is; what is stretched or mirrored is measured itself.
         assert!(at_rest(&Solid::cuboid([1.0; 3]).rotate_z(deg(10.0))).is_some());
         for other in [still.clone(), still.scale(2.0), still.reflect_x()] {
             assert!(at_rest(&other).is_none());

@@ -54,17 +54,11 @@ pub(super) fn exact(
     let (outward, changes) = intended(&outward, &free, &vertices, size, run)?;
     let inward = outward.iter().map(|(adds, leaf)| (*adds, leaf.inward(centre, size))).collect();
     let steps = steps(selector, &found, inward);
-    let mut meant = BTreeMap::new();
+    // What is taken back has its own numbers, and settled axes all the same.
+    let mut meant = settled(&found.steps, &selector.leaves(&found.steps), &free, samples);
     for (i, (step, (_, leaf))) in steps.iter().zip(outward).enumerate() {
         let own = changes.iter().filter(|change| change.leaf == i).copied().collect();
         meant.insert(step.which, Meant { leaf, changes: own });
-    }
-    // What is taken back has its own numbers, and settled axes all the same.
-    let as_found = selector.leaves(&found.steps);
-    for (i, (step, (_, leaf))) in found.steps.iter().zip(&as_found).enumerate() {
-        let leaf = leaf.outward(centre, size);
-        let changes = free[i].turn(i, &leaf).filter(|_| is_settled(&as_found, i)).into_iter().collect();
-        meant.entry(step.which).or_insert(Meant { leaf, changes });
     }
     let exact = selector.model(steps);
     let model = harmless(selector, &found, exact, |model| topologies.off(selector, model))?;
@@ -81,6 +75,21 @@ fn free(leaves: &[(bool, Leaf)], vertices: &[DVec3], samples: &Samples, run: &Ru
         leaf: told.unwrap_or(sampled).outward(centre, size),
     };
     Ok(told.into_iter().zip(sampled).map(free).collect())
+}
+
+/// Leaves in diagonals as they are, with what was settled of their axes, by candidates.
+fn settled(
+    steps: &[Step],
+    leaves: &[(bool, Leaf)],
+    free: &[Free],
+    Samples { centre, size, .. }: &Samples,
+) -> BTreeMap<u32, Meant> {
+    let meant = |(i, (step, (_, leaf))): (usize, (&Step, &(bool, Leaf)))| {
+        let leaf = leaf.outward(*centre, *size);
+        let changes = free[i].turn(i, &leaf).filter(|_| is_settled(leaves, i)).into_iter().collect();
+        (step.which, Meant { leaf, changes })
+    };
+    steps.iter().zip(leaves).enumerate().map(meant).collect()
 }
 
 /// The model with axes as nothing but vertices and samples tell them, where that is not for the
@@ -184,14 +193,7 @@ pub(super) fn opened(
     let Samples { centre, size, .. } = *samples;
     let leaves = selector.leaves(&model.steps);
     let free = free(&leaves, &[], samples, run)?;
-    let mut meant = BTreeMap::new();
-    let turn = |i: usize, leaf: &Leaf| free[i].turn(i, leaf).filter(|_| is_settled(&leaves, i));
-    for (i, (step, (_, leaf))) in model.steps.iter().zip(&leaves).enumerate() {
-        let leaf = leaf.outward(centre, size);
-        if let Some(turn) = turn(i, &leaf) {
-            meant.insert(step.which, Meant { changes: vec![turn], leaf });
-        }
-    }
+    let mut meant = settled(&model.steps, &leaves, &free, samples);
     for i in 0..model.steps.len() {
         run.check()?;
         let leaves = selector.leaves(&model.steps);
@@ -208,7 +210,8 @@ pub(super) fn opened(
                 // The other end is the same but for the last digits.
                 let is_moved = |change: &Change| (change.to - change.from).abs() > GRAIN * size;
                 let ends = changes(i, &old, &numbers).into_iter().filter(is_moved);
-                let changes = turn(i, &old).into_iter().chain(ends).collect();
+                let mut changes = meant.get(&model.steps[i].which).map_or(Vec::new(), |meant| meant.changes.clone());
+                changes.extend(ends);
                 meant.insert(which, Meant { changes, leaf });
                 model = next;
             }
