@@ -187,32 +187,42 @@ pub(super) fn fitted<T: Copy>(
 mod tests {
     use glam::DMat3;
 
-    use super::super::leaf::Shape;
+    use super::super::leaf_tests::leaves;
+    use super::super::snap;
     use super::*;
-    use crate::{MeshSettings, Prism, Superellipsoid};
+    use crate::{CellSize, MeshSettings, Solid};
 
-    /// Samples tell of settled axes only: what is turned by every fit, and about its own axis, stays
-    /// as it was fitted.
+    /// Samples, and vertices where there are such, tell turns of settled axes, whatever the leaf is.
+    /// What is turned by every fit, and about its own axis, stays as it was fitted.
     #[test]
-    fn samples_tell_turns_of_settled_axes() {
-        let oblique = DMat3::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.7);
-        let off = DMat3::from_axis_angle(DVec3::new(0.6, 0.8, 0.0), 0.01);
-        let found = |shape: Shape, off: DMat3| {
-            let truth = Leaf { shape, rotation: oblique * off, centre: DVec3::new(3.0, -1.0, 2.0) };
-            let mesh = truth.solid().mesh(&MeshSettings::default()).unwrap();
+    fn turns_of_settled_axes_are_told_of_every_kind() {
+        let tilt = DMat3::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 0.008);
+        for truth in leaves() {
+            let kind = truth.kind();
+            let turn = |by: DMat3| Leaf { rotation: truth.rotation * by, ..truth.clone() };
+            // A half-space has an end here.
+            let there = turn(tilt).outward(DVec3::ZERO, 20.0).solid() & Solid::sphere(14.0);
+            let coarse = MeshSettings { cell: CellSize::LongestSide(24), ..MeshSettings::default() };
+            let mesh = there.mesh(&coarse).unwrap();
             let samples = Samples::of_mesh(&mesh, 0, &Run::default()).unwrap();
-            let settled = Leaf { rotation: oblique, ..truth.clone() }.inward(samples.centre, samples.size);
-            let free = turned(&[(true, settled.clone())], &samples, &Run::default()).unwrap().swap_remove(0);
-            let angle =
-                |a: &Leaf, b: &Leaf| (a.rotation - b.rotation).to_cols_array().map(|x| x * x).iter().sum::<f64>();
-            [angle(&free, &settled), angle(&free, &truth)].map(|square| (0.5 * square).sqrt())
-        };
-        let prism = || Shape::Prism(Prism::new(6, 5.0, 8.0));
-        let tilted = found(prism(), off);
-        assert!(tilted[0] > 0.009 && tilted[1] < 2e-4, "{tilted:?}");
-        let about_itself = found(prism(), DMat3::from_rotation_z(0.01));
-        assert!(about_itself[0] < 2e-4, "{about_itself:?}");
-        let round = found(Shape::Superellipsoid(Superellipsoid::new([5.0, 3.0, 2.0], 0.5, 0.7)), off);
-        assert_eq!(round[0], 0.0);
+            let inward = |leaf: Leaf| leaf.outward(DVec3::ZERO, 20.0).inward(samples.centre, samples.size);
+            let (settled, right) = (inward(truth.clone()), inward(turn(tilt)));
+            let some = mesh.positions().iter().step_by(mesh.positions().len().div_ceil(400));
+            let vertices: Vec<DVec3> = some.map(|p| (p.as_dvec3() - samples.centre) / samples.size).collect();
+            let leaves = [(true, settled.clone())];
+            let sampled = turned(&leaves, &samples, &Run::default()).unwrap().swap_remove(0);
+            let told = snap::turned(&leaves, &vertices, &Run::default()).unwrap().swap_remove(0);
+            let off = |leaf: &Leaf| leaf.rotation.z_axis.angle_between(right.rotation.z_axis);
+            if truth.turns() == 0 {
+                assert!(sampled.rotation == settled.rotation && told.is_none(), "{kind}");
+                continue;
+            }
+            assert!(off(&sampled) < 5e-4, "{kind}: {}", off(&sampled));
+            let own = settled.rotation.transpose() * sampled.rotation;
+            let about_itself = 0.5 * (own.x_axis.y - own.y_axis.x);
+            assert!(about_itself.abs() < 1e-4 || truth.turns() == 3, "{kind}: {about_itself}");
+            let told = told.unwrap_or_else(|| panic!("{kind}: vertices tell nothing"));
+            assert!(off(&told) < 5e-5, "{kind}: {}", off(&told));
+        }
     }
 }
