@@ -16,7 +16,6 @@ use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_e
 use super::{Program, Tape};
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::{AnyField, Chunk, VALUE_LIMIT, Way, Zone, bits};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// Differences of gradients are taken over this part of the leg, point by point and in lanes.
@@ -217,7 +216,6 @@ impl AnyField for Bevel {
         false
     }
 
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, [x, _, _]: [Symbol<'a>; 3]) -> Symbol<'a> {
         // Programs with a chamfer are not lowered.
         rvachev_num::Real::lift(x, -VALUE_LIMIT)

@@ -10,7 +10,6 @@ use super::{Evaluator, Gradients, Program, Tape};
 use crate::{Bounds, Dual, Interval, ParamError};
 use rvachev_field::kernel::CHUNK;
 use rvachev_field::{AnyField, Chunk, Placement, Way, Zone};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 #[derive(Debug)]
@@ -100,7 +99,6 @@ impl AnyField for Composite {
         self.program.rises(zone, ways)
     }
 
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         self.program.evaluate(p, &mut Vec::new())
     }
@@ -136,7 +134,6 @@ impl AnyField for Composite {
         write_gradients(chunk.placement, &slopes, chunk.out);
     }
 
-    #[cfg(feature = "formula")]
     fn is_formula(&self) -> bool {
         self.program.unlowered().is_none()
     }

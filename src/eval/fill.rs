@@ -24,10 +24,8 @@ use glam::{DAffine3, DVec3};
 use super::composite::unscaled;
 use super::few::{Few, Lane};
 use crate::{Bounds, Dual, Interval, ParamError, Real};
-#[cfg(feature = "formula")]
 use rvachev_field::VALUE_LIMIT;
 use rvachev_field::{AnyField, Chunk, Way, Zone, bits, steep_slopes};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// D counts up to this part of the radius.
@@ -355,7 +353,6 @@ impl AnyField for Fill {
         false
     }
 
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, [x, _, _]: [Symbol<'a>; 3]) -> Symbol<'a> {
         // Programs with a fillet are not lowered.
         rvachev_num::Real::lift(x, -VALUE_LIMIT)

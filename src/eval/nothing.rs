@@ -4,7 +4,6 @@ use glam::{DAffine3, DVec3};
 
 use crate::{Bounds, Dual, Interval, ParamError};
 use rvachev_field::{AnyField, Chunk, VALUE_LIMIT, Zone};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// Outside everywhere.
@@ -60,7 +59,6 @@ impl AnyField for Nothing {
         [false; 3]
     }
 
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, [x, _, _]: [Symbol<'a>; 3]) -> Symbol<'a> {
         rvachev_num::Real::lift(x, -VALUE_LIMIT)
     }

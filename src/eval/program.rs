@@ -246,7 +246,6 @@ impl Program {
     }
 
     /// The first leaf that is no formula, if there is one.
-    #[cfg(feature = "formula")]
     pub(crate) fn unlowered(&self) -> Option<&Instance> {
         let leaves = self.nodes.iter().filter_map(Node::valued_by).map(|leaf| self.instance(leaf));
         leaves.into_iter().find(|leaf| !leaf.field.is_formula())

@@ -20,7 +20,6 @@ use super::source::{DistanceSource, Wanted};
 use super::tiling::{Key, Representative, Tiling};
 use crate::{Bounds, Dual, Interval, ParamError, Run, Solid};
 use rvachev_field::{AnyField, Chunk, Patches, Placement, SurfaceDistance, VALUE_LIMIT, Zone, steep_slopes};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// How long a tile's side is, in lengths.
@@ -274,7 +273,6 @@ impl AnyField for Tiles {
         }
     }
 
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, [x, _, _]: [Symbol<'a>; 3]) -> Symbol<'a> {
         // Programs with measured distances are not lowered.
         rvachev_num::Real::lift(x, -VALUE_LIMIT)

@@ -14,7 +14,6 @@ use super::outlined::{Outlined, zone_range, zone_rises};
 use super::{Along, Case, Crease, Field, Kernel, ParamError, Placement, Segment, Way, Zone, bits, steepest};
 use crate::kernel::{Element, Formula, Visit, run};
 use crate::{Bounds, Dual, Interval, Real};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 use rvachev_num::{Cancelled, Run};
 
@@ -157,7 +156,6 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn narrowed(&self, _zone: &Zone) -> Option<Arc<dyn AnyField>> {
         None
     }
-    #[cfg(feature = "formula")]
     /// The value as an expression tree.
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a>;
     /// Values of a chunk, on lanes of `f32`.
@@ -453,7 +451,6 @@ impl<F: Field> AnyField for F {
         if least.is_finite() { least } else { steepest(self.box_slopes(zone.hull())) }
     }
 
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         self.eval(p)
     }

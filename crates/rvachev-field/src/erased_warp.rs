@@ -5,7 +5,6 @@ use glam::DVec3;
 use crate::deform::{Branches, Warp};
 use crate::kernel::{Formula, run};
 use crate::{AnyWarp, Bounds, Chunk, Dual, Interval, ParamError, Placement, Real};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 struct PreImage<'a, W>(&'a W, &'a Placement);
@@ -60,7 +59,6 @@ impl<W: Warp> AnyWarp for W {
         self.slopes(p)
     }
 
-    #[cfg(feature = "formula")]
     fn symbols<'a>(&self, p: [Symbol<'a>; 3]) -> [Symbol<'a>; 3] {
         self.inverse(p)
     }

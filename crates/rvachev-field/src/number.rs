@@ -3,7 +3,6 @@
 //! What evaluates a graph is generic over these; the formulas behind them are compiled here, once
 //! for each number.
 
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 use crate::{AnyField, AnyWarp, Dual, Interval, Op, Real, Rule};
@@ -36,7 +35,6 @@ macro_rules! joined {
 }
 
 joined!(f64, Interval, Dual<f64>, Dual<Interval>);
-#[cfg(feature = "formula")]
 joined!(Symbol<'_>);
 
 impl Rule {
@@ -86,7 +84,6 @@ impl Number for Dual<Interval> {
     }
 }
 
-#[cfg(feature = "formula")]
 impl Number for Symbol<'_> {
     fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self {
         field.symbol(p)

@@ -8,7 +8,7 @@
 //! | [`Interval`] | a sound range over a box |
 //! | [`Dual`] over any of them | value and gradient |
 //! | SIMD lanes of `f32` and `f64` | values and gradients in bulk |
-//! | `Symbol` | an expression tree for fidget |
+//! | [`Symbol`](symbol::Symbol) | an expression tree for fidget |
 
 mod along;
 mod angle;
@@ -23,8 +23,9 @@ mod norm;
 mod real;
 mod run;
 pub mod signs;
-#[cfg(feature = "formula")]
 pub mod symbol;
+#[cfg(feature = "formula")]
+mod trees;
 
 pub use angle::{Angle, deg, rad, turns};
 pub use bounds::{Bounds, column_times};

@@ -1,114 +1,135 @@
-//! [`Real`] on expression trees of fidget: running a formula on them writes it down.
+//! [`Real`] on symbols: running a formula on them writes it down, step by step.
+//!
+//! What is written down is kept in an [`Arena`], as the trees that `trees` makes of it; a build
+//! without the feature `formula` has no such trees, so no arena and no symbol, and formulas can do
+//! without a case for it.
 //!
 //! fidget has no power and its logarithms and roots give NaN ranges and gradients at 0, so
 //! they are guarded: `|x|^p = exp(p·ln max(|x|, 10⁻³⁰))`, `√x = √max(x, 10⁻³⁰)`.
 
-use std::cell::RefCell;
 use std::f64::consts::{LN_2, LOG2_E};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use fidget::context::Tree;
-use fidget::var::Var;
+#[cfg(not(feature = "formula"))]
+use std::convert::Infallible;
 
+#[cfg(feature = "formula")]
+use super::trees::Trees;
 use super::{Norm, Real};
 
+/// What trees there are.
+#[cfg(not(feature = "formula"))]
+type Trees = Infallible;
+
 /// Where the trees of symbols live; a [`Symbol`] is a handle into it.
-#[derive(Default)]
-pub struct Arena(RefCell<Vec<Tree>>);
+pub struct Arena(pub(super) Trees);
+
+/// A step of a formula on what was written down before.
+#[derive(Clone, Copy)]
+#[cfg_attr(not(feature = "formula"), expect(dead_code, reason = "where nothing is written, nothing is read"))]
+pub(super) enum Step {
+    Constant(f64),
+    Neg(usize),
+    Square(usize),
+    Abs(usize),
+    Sqrt(usize),
+    Exp(usize),
+    Ln(usize),
+    Sin(usize),
+    Cos(usize),
+    Floor(usize),
+    Add(usize, usize),
+    Sub(usize, usize),
+    Mul(usize, usize),
+    Div(usize, usize),
+    Min(usize, usize),
+    Max(usize, usize),
+    Atan2(usize, usize),
+    /// What to take where the first is not negative, and where it is.
+    Select(usize, [usize; 2]),
+    /// A coordinate, as it is before any map.
+    Axis(usize),
+    /// The derivative of a value by a coordinate.
+    Slope(usize, usize),
+    /// A value, with other values for the coordinates.
+    At(usize, [usize; 3]),
+}
 
 impl Arena {
-    /// A symbol for `tree`.
-    pub fn symbol(&self, tree: Tree) -> Symbol<'_> {
-        let mut trees = self.0.borrow_mut();
-        trees.push(tree);
-        Symbol { arena: self, index: trees.len() - 1 }
-    }
-
-    /// The constant `c`.
-    pub fn constant(&self, c: f64) -> Symbol<'_> {
-        #[expect(clippy::cast_possible_truncation, reason = "fidget's constants are f32")]
-        self.symbol(Tree::constant(c as f32))
+    /// Writes down a step.
+    #[cfg(not(feature = "formula"))]
+    fn write(&self, _step: Step) -> usize {
+        match self.0 {}
     }
 }
 
 /// The least argument of a logarithm or root.
-const GUARD: f64 = 1e-30;
+pub(super) const GUARD: f64 = 1e-30;
 
-/// An expression, written down as a fidget tree.
+/// An expression, written down.
 #[derive(Clone, Copy)]
 pub struct Symbol<'a> {
-    arena: &'a Arena,
-    index: usize,
+    pub(super) arena: &'a Arena,
+    pub(super) index: usize,
 }
 
 impl Symbol<'_> {
-    /// The tree that this symbol stands for.
-    pub fn tree(self) -> Tree {
-        self.arena.0.borrow()[self.index].clone()
-    }
-
-    /// A symbol for `tree`, in the same arena.
-    pub fn of_tree(self, tree: Tree) -> Self {
-        self.make(tree)
-    }
-
-    /// A symbol for `tree` beside this one.
-    fn make(self, tree: Tree) -> Self {
-        self.arena.symbol(tree)
+    /// A symbol for `step`, in the same arena.
+    fn write(self, step: Step) -> Self {
+        Symbol { index: self.arena.write(step), ..self }
     }
 
     /// `field` divided by the length of its gradient, at `p`: the distance to first order.
     pub fn over_slope(p: [Self; 3], field: impl FnOnce([Self; 3]) -> Self) -> Self {
-        let [x, y, z] = p;
-        let axes: [Tree; 3] = Tree::axes().into();
-        let value = field(axes.map(|axis| x.make(axis)));
-        let slope = [Var::X, Var::Y, Var::Z].map(|axis| x.make(value.tree().deriv(axis)));
+        let [x, ..] = p;
+        let value = field([0, 1, 2].map(|axis| x.write(Step::Axis(axis))));
+        let slope = [0, 1, 2].map(|axis| x.write(Step::Slope(value.index, axis)));
         let length = (slope[0].square() + slope[1].square() + slope[2].square()).sqrt();
         let ratio = value / length.max(x.lift(1e-6));
-        x.make(ratio.tree().remap_xyz(x.tree(), y.tree(), z.tree()))
+        x.write(Step::At(ratio.index, p.map(|p| p.index)))
     }
 
     fn ln(self) -> Self {
-        self.make(self.tree().max(GUARD as f32).ln())
+        self.write(Step::Ln(self.index))
     }
 
     fn exp(self) -> Self {
-        self.make(self.tree().exp())
+        self.write(Step::Exp(self.index))
     }
 }
 
 impl Neg for Symbol<'_> {
     type Output = Self;
     fn neg(self) -> Self {
-        self.make(-self.tree())
+        self.write(Step::Neg(self.index))
     }
 }
 
 impl Add for Symbol<'_> {
     type Output = Self;
     fn add(self, o: Self) -> Self {
-        self.make(self.tree() + o.tree())
+        self.write(Step::Add(self.index, o.index))
     }
 }
 
 impl Sub for Symbol<'_> {
     type Output = Self;
     fn sub(self, o: Self) -> Self {
-        self.make(self.tree() - o.tree())
+        self.write(Step::Sub(self.index, o.index))
     }
 }
 
 impl Mul for Symbol<'_> {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
-        self.make(self.tree() * o.tree())
+        self.write(Step::Mul(self.index, o.index))
     }
 }
 
 impl Div for Symbol<'_> {
     type Output = Self;
     fn div(self, o: Self) -> Self {
-        self.make(self.tree() / o.tree())
+        self.write(Step::Div(self.index, o.index))
     }
 }
 
@@ -135,27 +156,27 @@ impl Mul<f64> for Symbol<'_> {
 
 impl Real for Symbol<'_> {
     fn lift(self, c: f64) -> Self {
-        self.arena.constant(c)
+        self.write(Step::Constant(c))
     }
 
     fn square(self) -> Self {
-        self.make(self.tree().square())
+        self.write(Step::Square(self.index))
     }
 
     fn abs(self) -> Self {
-        self.make(self.tree().abs())
+        self.write(Step::Abs(self.index))
     }
 
     fn min(self, o: Self) -> Self {
-        self.make(self.tree().min(o.tree()))
+        self.write(Step::Min(self.index, o.index))
     }
 
     fn max(self, o: Self) -> Self {
-        self.make(self.tree().max(o.tree()))
+        self.write(Step::Max(self.index, o.index))
     }
 
     fn sqrt(self) -> Self {
-        self.make(self.tree().max(GUARD as f32).sqrt())
+        self.write(Step::Sqrt(self.index))
     }
 
     fn exp2(self) -> Self {
@@ -177,22 +198,19 @@ impl Real for Symbol<'_> {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        (self.make(self.tree().sin()), self.make(self.tree().cos()))
+        (self.write(Step::Sin(self.index)), self.write(Step::Cos(self.index)))
     }
 
     fn atan2(self, x: Self) -> Self {
-        self.make(self.tree().atan2(x.tree()))
+        self.write(Step::Atan2(self.index, x.index))
     }
 
     fn floor(self) -> Self {
-        self.make(self.tree().floor())
+        self.write(Step::Floor(self.index))
     }
 
     fn select(self, nonneg: Self, neg: Self) -> Self {
-        // compare gives −1, 0 or 1; `and` and `or` choose by whether their left side is 0.
-        let holds = self.tree().compare(0.0) + 1.0;
-        let fails = holds.not();
-        self.make(holds.and(nonneg.tree()).or(fails.and(neg.tree())))
+        self.write(Step::Select(self.index, [nonneg.index, neg.index]))
     }
 
     fn norm(self, o: Self, norm: Norm) -> Self {
@@ -211,7 +229,7 @@ impl Real for Symbol<'_> {
     }
 
     fn norm_parts(self, o: Self, norm: Norm) -> (Self, Self, Self) {
-        // fidget differentiates its trees itself; here the weights are spelt out.
+        // Trees are differentiated as such; here the weights are spelt out.
         let value = self.norm(o, norm);
         let floor = value.max(value.lift(GUARD));
         let one = self.lift(1.0);

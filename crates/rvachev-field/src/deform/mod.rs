@@ -25,7 +25,6 @@ use glam::{DAffine3, DVec3};
 
 use super::{Chunk, ParamError};
 use crate::{Bounds, Dual, Euclid, Interval, Real};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 pub use bend::Bend;
@@ -124,7 +123,6 @@ pub trait AnyWarp: Any + Debug + Send + Sync {
     fn duals(&self, p: [Dual<f64>; 3]) -> [Dual<f64>; 3];
     /// Ranges of the pre-image and of its derivatives.
     fn dual_ranges(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3];
-    #[cfg(feature = "formula")]
     /// The pre-image as expression trees.
     fn symbols<'a>(&self, p: [Symbol<'a>; 3]) -> [Symbol<'a>; 3];
     /// Pre-images of a chunk, on lanes of `f32`.

@@ -6,7 +6,6 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::{Foot, Patches};
 use crate::{AnyField, Bounds, Chunk, Dual, Interval, ParamError, VALUE_LIMIT, Way, Zone, steep_slopes};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// Nearer than this part of the surface's size, the direction to the foot is rounding, and the
@@ -321,7 +320,6 @@ impl AnyField for SurfaceDistance {
 
     /// To first order: the sign field's value by the length of its gradient. The search does not
     /// fit an expression tree.
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         Symbol::over_slope(p, |p| self.sign.symbol(p))
     }

@@ -12,7 +12,6 @@ use crate::{
     AnyField, Bounds, COORDINATE_LIMIT, Chunk, Dual, Facets, Interval, ParamError, Placement, VALUE_LIMIT, Way, Zone,
     bits, steep_slopes,
 };
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// Normals of stored triangles are off by less.
@@ -219,7 +218,6 @@ impl AnyField for MeshLeaf {
     }
 
     /// What is searched for fits no tree, and is not asked for one.
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         p[0]
     }

@@ -13,7 +13,6 @@ use super::crossings::Crossings;
 use super::winding::{Stack, Winding};
 use crate::kernel::{Element, on_level};
 use crate::{AnyField, Bounds, Chunk, Dual, Interval, ParamError, Placement, Zone};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// Points farther out than this, in units of the patches' frame, are moved there.
@@ -156,7 +155,6 @@ impl AnyField for Winding {
     }
 
     /// What is searched for fits no tree, and is not asked for one.
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         p[0]
     }

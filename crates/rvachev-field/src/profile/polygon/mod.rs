@@ -26,7 +26,6 @@ use crate::{Bounds, Dual, Interval, Real};
 use edge::Edge;
 use near::{NearEdges, Reference};
 use patch::Patch;
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 use rvachev_num::{Cancelled, Run};
 use tree::Tree;
@@ -412,7 +411,6 @@ impl AnyField for Polygon {
         Some(Arc::new(leaf))
     }
 
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         NearEdges::symbol_of(&self.border().edges, p)
     }

@@ -12,7 +12,6 @@ use glam::{DAffine3, DVec2};
 use super::super::super::{AnyField, Chunk, Field, ParamError, VALUE_LIMIT, Way, Zone, bits, steep_slopes};
 use super::{Edge, Patch};
 use crate::{Bounds, Dual, Interval, Real};
-#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// The nearest of a list of edges, as a formula: what lanes run.
@@ -133,7 +132,6 @@ impl NearEdges {
         (room > 4.0 * margin(patch, reach)).then(|| NearEdges::new(edges, reference, reach))
     }
 
-    #[cfg(feature = "formula")]
     /// The formula on symbols, for as many edges as there are.
     pub(super) fn symbol_of<'a>(edges: &[Edge], [x, y, _]: [Symbol<'a>; 3]) -> Symbol<'a> {
         // A balanced tree: fidget's own walks go as deep as it is.
@@ -262,7 +260,6 @@ impl AnyField for NearEdges {
         Some(Arc::new(leaf))
     }
 
-    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         self.0.symbol(p)
     }
