@@ -175,7 +175,7 @@ impl Facets {
     }
 
     /// Which vertices have corners whose normals differ.
-    fn creased(&self) -> Vec<bool> {
+    pub(super) fn creased(&self) -> Vec<bool> {
         let mut first = vec![DVec3::ZERO; self.positions.len()];
         let mut creased = vec![false; self.positions.len()];
         for (triangle, normals) in self.triangles.iter().zip(&self.normals) {

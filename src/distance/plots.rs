@@ -24,8 +24,9 @@ pub(super) struct Plot {
 #[derive(Clone, Copy)]
 pub(super) struct Rim {
     pub(super) ends: [u32; 2],
-    pub(super) toward: DVec3,
     pub(super) normals: [DVec3; 2],
+    /// Whether the triangle has a corner on a crease.
+    pub(super) is_by_crease: bool,
 }
 
 /// The plots of a mesh, in turn.
@@ -37,6 +38,8 @@ pub(super) struct Plots {
     /// Sides of triangles that are a plot's and another one's: whose, and the triangle and side of
     /// the other.
     shared: Vec<(usize, u32, u8)>,
+    /// The vertices on creases.
+    creased: Vec<bool>,
     /// Vertices as the plot that is made counts them.
     own: Vec<u32>,
     next: usize,
@@ -51,7 +54,8 @@ impl Plots {
         let (order, ends) = parted(&facets, most);
         let shared = shared(&facets, &order, &ends);
         let own = vec![NONE; facets.positions.len()];
-        Plots { facets, order, ends, shared, own, next: 0 }
+        let creased = facets.creased();
+        Plots { facets, order, ends, shared, creased, own, next: 0 }
     }
 
     /// How many there are.
@@ -96,12 +100,12 @@ impl Iterator for Plots {
         }
         let first = self.shared.partition_point(|(of, ..)| *of < number);
         for (_, triangle, side) in self.shared[first..].iter().take_while(|(of, ..)| *of == number) {
-            let [a, b, c] = [0, 1, 2].map(|k| (usize::from(*side) + k) % 3);
+            let [a, b] = [0, 1].map(|k| (usize::from(*side) + k) % 3);
             let (corners, normals) = (all.triangles[*triangle as usize], all.normals[*triangle as usize]);
             plot.rims.push(Rim {
                 ends: [a, b].map(|k| own[corners[k] as usize]),
-                toward: all.positions[corners[c] as usize],
                 normals: [a, b].map(|k| normals[k]),
+                is_by_crease: corners.iter().any(|corner| self.creased[*corner as usize]),
             });
         }
         for number in &self.order[self.from(number)..end] {

@@ -170,7 +170,7 @@ impl Quilt {
         let mut positions = plot.facets.positions;
         let mut far_off = 0.0;
         for depth in 0..=last {
-            seams.find(&positions, slopes, run)?;
+            seams.find(&pieces, &positions, slopes, run)?;
             let patch = |(number, piece): (usize, &Piece)| {
                 often(number, run)?;
                 Ok(piece.patch(&positions, &seams, tolerance))

@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::crease::{Plane, meet};
 use super::facets::CREASE;
+use super::piece::Piece;
 use crate::mesh::Slopes;
 use crate::{Cancelled, Run};
 
@@ -38,9 +39,12 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seam {
     pub(super) ends: [u32; 2],
-    /// Points that the triangles on both sides reach to; the same twice at a border.
-    pub(super) toward: [DVec3; 2],
+    /// The normals of the faces on both sides, as the triangles there have them; the same twice at a
+    /// border. They tell where the faces are from here, whatever the shape of the triangles.
+    faces: [DVec3; 2],
     pub(super) is_crease: bool,
+    /// Whether a triangle beside it has a corner on a crease.
+    is_by_crease: bool,
     /// Where it passes over a crease from one face to another, and the normals on the way.
     pub(super) crossing: Option<(DVec3, [DVec3; 2])>,
     /// The vertex where it was split, once it is.
@@ -61,6 +65,8 @@ pub(super) struct Seams {
     /// By vertex, the first of the sides that start there.
     starts: Vec<u32>,
     pub(super) list: Vec<Seam>,
+    /// Which vertices are on creases.
+    creased: Vec<bool>,
     /// From here on their middles are not known yet.
     fresh: usize,
 }
@@ -73,16 +79,15 @@ pub(super) struct Hem {
 }
 
 impl Seams {
-    /// The side between two vertices, seen from a triangle that reaches to a point and has these
-    /// normals there.
-    pub(super) fn hem(&mut self, ends: [u32; 2], toward: DVec3, normals: [DVec3; 2]) -> Hem {
+    /// The side between two vertices, seen from a triangle that has these normals there.
+    pub(super) fn hem(&mut self, ends: [u32; 2], normals: [DVec3; 2]) -> Hem {
         let side = usize::from(ends[0] > ends[1]);
         let (mut ends, mut normals) = (ends, normals);
         if side == 1 {
             ends.reverse();
             normals.reverse();
         }
-        let first = ends[0] as usize;
+        let (first, face) = (ends[0] as usize, normals[0] + normals[1]);
         self.starts.resize(self.starts.len().max(first + 1), NONE);
         let mut at = self.starts[first];
         while at != NONE && self.list[at as usize].ends[1] != ends[1] {
@@ -92,8 +97,9 @@ impl Seams {
             at = self.list.len() as u32;
             self.list.push(Seam {
                 ends,
-                toward: [toward; 2],
+                faces: [face; 2],
                 is_crease: false,
+                is_by_crease: false,
                 crossing: None,
                 vertex: None,
                 middle: DVec3::ZERO,
@@ -110,30 +116,30 @@ impl Seams {
                 seam.is_crease |= differ[0].max(differ[1]) > CREASE;
             }
         }
-        self.list[at as usize].toward[side] = toward;
+        self.list[at as usize].faces[side] = face;
         Hem { seam: at, side }
     }
 
     /// The same side, which is part of a larger one.
     pub(super) fn part(&mut self, ends: [u32; 2], whole: Hem, normals: [DVec3; 2]) -> Hem {
-        let Seam { toward, is_crease, .. } = self.list[whole.seam as usize];
+        let Seam { faces, is_crease, .. } = self.list[whole.seam as usize];
         let known = self.list.len();
-        let hem = self.hem(ends, toward[whole.side], normals);
+        let hem = self.hem(ends, normals);
         let seam = &mut self.list[hem.seam as usize];
         if hem.seam as usize == known {
-            // Seen from the other side the ends are the other way round.
-            (seam.toward[hem.side], seam.toward[1 - hem.side]) = (toward[whole.side], toward[1 - whole.side]);
+            seam.faces[1 - hem.side] = faces[1 - whole.side];
             seam.is_crease = is_crease;
         }
         hem
     }
 
-    /// A side along a crease, seen from a triangle that has its ends in this order; the surface on
-    /// both sides of it is towards two points, that of the triangle first.
-    pub(super) fn ridge(&mut self, ends: [u32; 2], toward: [DVec3; 2]) -> Hem {
-        let hem = self.hem(ends, toward[0], [DVec3::ZERO; 2]);
+    /// A side along a crease, seen from a triangle that has its ends in this order; the normals there
+    /// on both sides of it, those of the triangle first.
+    pub(super) fn ridge(&mut self, ends: [u32; 2], normals: [[DVec3; 2]; 2]) -> Hem {
+        let [own, beyond] = normals;
+        let hem = self.hem(ends, own);
         let seam = &mut self.list[hem.seam as usize];
-        (seam.toward[hem.side], seam.toward[1 - hem.side]) = (toward[0], toward[1]);
+        seam.faces[1 - hem.side] = beyond[0] + beyond[1];
         seam.is_crease = true;
         hem
     }
@@ -212,8 +218,34 @@ impl Seams {
         self.of(hem).normals[hem.side]
     }
 
-    /// Finds the middles that are not known yet.
-    pub(super) fn find(&mut self, positions: &[DVec3], slopes: &Slopes<'_>, run: &Run) -> Result<(), Cancelled> {
+    /// Has a side looked at between its ends and its middle: a crease may pass over it and come back,
+    /// though they are all on one face.
+    pub(super) fn watch(&mut self, hem: Hem) {
+        self.list[hem.seam as usize].is_by_crease = true;
+    }
+
+    /// Has those sides looked at that are new and of triangles with a corner on a crease.
+    fn watch_creases(&mut self, pieces: &[Piece], vertices: usize) {
+        self.creased.resize(vertices, false);
+        for seam in self.list[self.fresh..].iter().filter(|seam| seam.is_crease) {
+            seam.ends.iter().for_each(|end| self.creased[*end as usize] = true);
+        }
+        for piece in pieces {
+            if piece.corners.iter().any(|v| self.creased[*v as usize]) {
+                piece.hems.iter().for_each(|hem| self.watch(*hem));
+            }
+        }
+    }
+
+    /// Finds the middles of the sides of pieces that are not known yet.
+    pub(super) fn find(
+        &mut self,
+        pieces: &[Piece],
+        positions: &[DVec3],
+        slopes: &Slopes<'_>,
+        run: &Run,
+    ) -> Result<(), Cancelled> {
+        self.watch_creases(pieces, positions.len());
         let fresh = self.fresh..self.list.len();
         self.fresh = self.list.len();
         for number in fresh.clone() {
@@ -227,14 +259,14 @@ impl Seams {
             }
         }
         let (creases, smooth): (Vec<usize>, Vec<usize>) = fresh.partition(|n| self.list[*n].is_crease);
-        let moved = self.slide(&smooth, positions, slopes, run)?;
-        self.probe(&moved, positions, slopes, run)?;
+        let asked = self.slide(&smooth, positions, slopes, run)?;
+        self.probe(&asked, positions, slopes, run)?;
         self.meet(&creases, positions, slopes, run)?;
         self.compare(&creases, positions, slopes, run)
     }
 
     /// Newton steps along the gradient. Gives the sides whose middles were not where their ends
-    /// tell.
+    /// tell, and those by creases.
     fn slide(
         &mut self,
         numbers: &[usize],
@@ -255,8 +287,11 @@ impl Seams {
                 slope.distance() > SETTLED * slopes.precision
             });
         }
-        let is_moved = |(n, before): &(&usize, &DVec3)| self.list[**n].middle.distance(**before) > slopes.precision;
-        Ok(numbers.iter().zip(&before).filter(is_moved).map(|(n, _)| *n).collect())
+        let is_asked = |(n, before): &(&usize, &DVec3)| {
+            let seam = &self.list[**n];
+            seam.is_by_crease || seam.middle.distance(**before) > slopes.precision
+        };
+        Ok(numbers.iter().zip(&before).filter(is_asked).map(|(n, _)| *n).collect())
     }
 
     /// Sees how far sides are off the surface between their ends and middles: one that starts from
@@ -388,12 +423,9 @@ impl Seam {
     /// Points on both sides of one on a crease, so far from it in parts of the side's length.
     fn beside(&self, point: DVec3, aside: f64, positions: &[DVec3]) -> [DVec3; 2] {
         let [a, b] = self.ends.map(|v| positions[v as usize]);
-        let along = (b - a).normalize_or_zero();
-        self.toward.map(|toward| {
-            let across = toward - point;
-            let across = (across - across.dot(along) * along).normalize_or_zero();
-            point + aside * a.distance(b) * across
-        })
+        // A triangle is to the left of its sides.
+        let [left, right] = [0, 1].map(|side| self.faces[side].cross(b - a).normalize_or_zero());
+        [left, -right].map(|across| point + aside * a.distance(b) * across)
     }
 
     /// How far the middle is off that of the straight side.

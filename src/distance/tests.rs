@@ -14,7 +14,7 @@ use super::{compiled, surface_of};
 use crate::eval::{Wanted, surface};
 use crate::mesh::Slopes;
 use crate::{Blend, Bounds, Run, Solid, deg};
-use rvachev_field::Patch;
+use rvachev_field::{Patch, Patches};
 
 /// Two cubes side by side.
 fn block() -> Solid {
@@ -86,28 +86,31 @@ fn plots_are_told_of_what_is_beyond_their_sides() {
     let programs = compiled(&solid).unwrap();
     let mesh = sharp(&programs.surface, programs.bounds, 3.0, &Run::default()).unwrap();
     let facets = || Facets::new(&mesh, |_| true);
-    let side = |p: [DVec3; 2]| {
-        let mut ends = p.map(|p| p.to_array().map(f64::to_bits));
-        ends.sort_unstable();
-        ends
+    // The ends of a side in order, and the normals there.
+    type Ends = [[u64; 3]; 2];
+    let side = |p: [DVec3; 2], normals: [DVec3; 2]| -> (Ends, [DVec3; 2]) {
+        let mut ends = [0, 1].map(|k| (p[k].to_array().map(f64::to_bits), normals[k]));
+        ends.sort_unstable_by_key(|(end, _)| *end);
+        (ends.map(|(end, _)| end), ends.map(|(_, normal)| normal))
     };
     let (mut triangles, mut rims) = (0, HashMap::new());
     for plot in Plots::new(facets(), 64) {
         assert!(plot.facets.triangles.len() <= 64);
         triangles += plot.facets.triangles.len();
         let place = |v: u32| plot.facets.positions[v as usize];
-        let mut own: HashMap<[[u64; 3]; 2], (u32, DVec3)> = HashMap::new();
-        for [a, b, c] in &plot.facets.triangles {
-            for [a, b, c] in [[a, b, c], [b, c, a], [c, a, b]] {
-                own.entry(side([*a, *b].map(place))).or_insert((0, place(*c))).0 += 1;
+        let mut own: HashMap<Ends, (u32, [DVec3; 2])> = HashMap::new();
+        for (corners, normals) in plot.facets.triangles.iter().zip(&plot.facets.normals) {
+            for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                let (ends, normals) = side([a, b].map(|k: usize| place(corners[k])), [a, b].map(|k| normals[k]));
+                own.entry(ends).or_insert((0, normals)).0 += 1;
             }
         }
-        let of_rims = plot.rims.iter().map(|rim| (side(rim.ends.map(place)), rim.toward));
-        let told: HashMap<[[u64; 3]; 2], DVec3> = of_rims.collect();
-        for (side, (count, corner)) in own {
-            assert_eq!(count == 1, told.contains_key(&side), "a side of {count} triangles");
-            if let Some(toward) = told.get(&side) {
-                rims.entry(side).or_insert_with(Vec::new).push([corner, *toward]);
+        let told: HashMap<Ends, [DVec3; 2]> =
+            plot.rims.iter().map(|rim| side(rim.ends.map(place), rim.normals)).collect();
+        for (ends, (count, normals)) in own {
+            assert_eq!(count == 1, told.contains_key(&ends), "a side of {count} triangles");
+            if let Some(beyond) = told.get(&ends) {
+                rims.entry(ends).or_insert_with(Vec::new).push([normals, *beyond]);
             }
         }
     }
@@ -139,6 +142,45 @@ fn no_patch_passes_over_a_concave_crease() {
         let value = both.value(ball + RADIUS * towards).unwrap();
         assert!(value.abs() < 3e-3 * RADIUS, "{value} at {side}");
     }
+}
+
+/// A pin of .15 through a plate, and triangles of the plate's top and of the pin beside its edge.
+fn beside_a_pin(positions: &[[f64; 3]], triangles: &[([u32; 3], bool)]) -> Quilt {
+    let plate = Solid::cuboid([2.0, 2.0, 1.0]).translate([0.0, 0.0, -0.5]);
+    let programs = compiled(&(plate | Solid::cylinder(0.15, 1.0))).unwrap();
+    let positions: Vec<DVec3> = positions.iter().copied().map(DVec3::from).collect();
+    let normals = |(corners, is_top): &([u32; 3], bool)| {
+        corners
+            .map(|v| if *is_top { DVec3::Z } else { (positions[v as usize] * DVec3::new(1.0, 1.0, 0.0)).normalize() })
+    };
+    let normals = triangles.iter().map(normals).collect();
+    let facets = Facets { triangles: triangles.iter().map(|(corners, _)| *corners).collect(), normals, positions };
+    let slopes = Slopes { program: &programs.surface, precision: 3e-5 };
+    Quilt::new(facets, &slopes, Care::new(3e-5), &Run::default()).unwrap().unwrap()
+}
+
+/// An edge that passes over a side between two vertices of one face, and comes back.
+#[test]
+fn no_patch_is_beyond_an_edge_that_its_side_is_crossed_by() {
+    let top = [[0.2241, 0.019, 0.0], [0.1489, 0.019, 0.0], [0.1489, -0.0562, 0.0]];
+    let edge = [[0.14776, -0.02583, 0.0], [0.13799, 0.05882, 0.0]];
+    let of_pin = [[0.1487, 0.0197, 0.0014]];
+    let positions = [&top[..], &edge, &of_pin].concat();
+    let triangles = [([0, 1, 2], true), ([3, 2, 1], true), ([3, 1, 4], true), ([4, 5, 3], false)];
+    let quilt = beside_a_pin(&positions, &triangles);
+    let patches = Patches::new(&quilt.patches, &Run::default()).unwrap();
+    let foot = patches.nearest(DVec3::new(0.15, 0.0, 0.0) - 0.05 * (DVec3::X + DVec3::Z).normalize()).unwrap();
+    assert!((foot.distance - 0.05).abs() < 5e-5, "{foot:?}");
+}
+
+/// A triangle between an edge and the chord of it reaches nowhere: where the faces beside the edge
+/// are is told by normals.
+#[test]
+fn slivers_along_an_edge_are_on_it() {
+    let at = |angle: f64, radius: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
+    let positions = [at(0.0, 0.15, 0.0), at(0.02, 0.15, 0.0), at(0.01, 0.15 - 3e-6, 0.0), at(0.01, 0.15, 0.003)];
+    let quilt = beside_a_pin(&positions, &[([1, 0, 2], true), ([0, 1, 3], false)]);
+    assert!(quilt.spots.is_empty() && quilt.error < 1e-4, "{} spots, {}", quilt.spots.len(), quilt.error);
 }
 
 #[test]

@@ -2,8 +2,9 @@
 
 use std::cell::{OnceCell, RefCell};
 use std::error::Error;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use cpu_time::ProcessTime;
 use glam::DVec3;
 use rvachev::{Bounds, CancelToken, Progress, Run, Solid, error::PrepareError};
 
@@ -20,8 +21,9 @@ const POINTS: usize = 60;
 /// Lengths of lengths are measured to this many tolerances: what is asked of them is the same.
 const COARSE: f64 = 4.0;
 
-/// A solid that takes longer to be measured is left out, and told.
-const PATIENCE: Duration = Duration::from_secs(20);
+/// A solid that takes longer to be measured is left out, and told: so much time of all processors,
+/// which does not depend on what else they do.
+const PATIENCE: Duration = Duration::from_secs(100);
 
 /// A random solid that ends: cut to its frame if it does not.
 pub fn bounded(random: &mut Random, depth: usize) -> Solid {
@@ -157,7 +159,7 @@ impl Subject {
     /// A solid once its lengths are measured; `None` if that takes too long.
     pub fn measured(&self, solid: Solid, what: &'static str) -> Result<Option<Solid>, Box<dyn Error>> {
         let cancel = CancelToken::new();
-        let (token, start) = (cancel.clone(), Instant::now());
+        let (token, start) = (cancel.clone(), ProcessTime::now());
         let progress = Progress::new(move |_| {
             if start.elapsed() > PATIENCE {
                 token.cancel();
