@@ -22,7 +22,7 @@ use crate::{Bounds, Cancelled, Mesh, RFunction, Run, Solid};
 use rvachev_field::Patches;
 
 /// So many boxes are meshed, and boxes in these.
-const BOXES: usize = 512;
+const BOXES: usize = 4096;
 const DEEPEST: u32 = 2;
 
 /// Cells along a box, and how often their patches are split.
@@ -147,7 +147,8 @@ fn groups(spots: &[Spot], tolerance: f64) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for (number, spot) in spots.iter().enumerate() {
         let (mut bounds, mut numbers) = (around(spot, tolerance), vec![number]);
-        while let Some(at) = groups.iter().position(|(other, _)| other.intersects(&bounds)) {
+        // Neighbours follow each other mostly, and groups that have grown are the last.
+        while let Some(at) = groups.iter().rposition(|(other, _)| other.intersects(&bounds)) {
             let (other, mut others) = groups.swap_remove(at);
             bounds = bounds.union(&other);
             // The longer list stays where it is, or a large group would be copied for each of its
