@@ -313,8 +313,8 @@ fn what_is_decided_is_not_asked_about() {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let plate = Solid::cuboid([4.0, 4.0, 1.0]);
     let solids = [
-        (plate.intersection(&Solid::new(Asked(&COUNT)), RFunction::MIN_MAX), DVec3::new(0.0, 0.0, 0.7)),
-        (plate.union(&Solid::new(Asked(&COUNT)), RFunction::MIN_MAX), DVec3::new(0.0, 0.0, 0.2)),
+        (plate.intersection(Solid::new(Asked(&COUNT)), RFunction::MIN_MAX), DVec3::new(0.0, 0.0, 0.7)),
+        (plate.union(Solid::new(Asked(&COUNT)), RFunction::MIN_MAX), DVec3::new(0.0, 0.0, 0.2)),
     ];
     for (number, (solid, decided)) in solids.iter().enumerate() {
         let program = solid.surface_program().unwrap();
