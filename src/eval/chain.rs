@@ -182,7 +182,10 @@ impl Pass<'_> {
     /// The range of what an edge leads to, whatever else is asked.
     fn range_below(&mut self, edge: Edge) -> Interval {
         self.ranges.resize(self.program.nodes.len(), None);
-        let mut pending = vec![edge.node()];
+        if let (Kind::Leaf(leaf), None) = (&self.program.nodes[edge.node()].kind, self.ranges[edge.node()]) {
+            self.ranges[edge.node()] = Some(self.program.leaf_range(*leaf, self.zones, self.world));
+        }
+        let mut pending = if self.ranges[edge.node()].is_none() { vec![edge.node()] } else { Vec::new() };
         while let Some(&at) = pending.last() {
             let node = &self.program.nodes[at];
             let before = pending.len();

@@ -62,12 +62,12 @@ impl Program {
         self.region(self.narrow_pass(&Zone::of_bounds(region), true))
     }
 
-    /// Tells the leaves which regions the program will be narrowed to next: some answer for many of
-    /// them at once as quickly as for one.
+    /// Tells the leaves that take long which regions the program will be narrowed to next: some
+    /// answer for many of them at once as quickly as for one.
     pub(crate) fn prefetch(&self, regions: &[Bounds]) {
         for leaf in self.nodes.iter().filter_map(Node::valued_by) {
             let instance = self.instance(leaf);
-            if instance.frame == 0 {
+            if instance.frame == 0 && instance.field.cost() > 1 {
                 let zone = |region: &Bounds| Zone::of_bounds(region).mapped(&instance.to_local);
                 instance.field.prefetch(&regions.iter().map(zone).collect::<Vec<_>>());
             }

@@ -102,8 +102,13 @@ impl<'a> Pass<'a> {
 
     pub(super) fn run(&mut self, asked: Asked) {
         self.ask(asked);
-        for at in 0..self.program.nodes.len() {
-            self.answer(at);
+        let program = self.program;
+        for (at, node) in program.nodes.iter().enumerate() {
+            // A leaf whose sign is asked for waits until a join asks: another may have decided.
+            let waits = matches!(node.kind, Kind::Leaf(_)) && !self.asked[at].value && at != program.root.node();
+            if !waits {
+                self.answer(at);
+            }
         }
     }
 
@@ -307,6 +312,7 @@ impl<'a> Pass<'a> {
         let mut kept: Vec<u32> = Vec::with_capacity(if hierarchy.is_some() { candidates.len() } else { 0 });
         for &operand in candidates {
             let edge = operands[operand as usize];
+            self.answer(edge.node());
             match (self.signs[edge.node()].flip_if(edge.negated()), op) {
                 (Sign::Positive, Op::Or) => {
                     self.list.truncate(start);

@@ -248,10 +248,10 @@ fn crossing(ray: &Ray<'_>, start: f64, grazes: &mut bool) -> Option<Hit> {
             let Along { value, slope: mut found } = if single { along(&piece.program) } else { Along::ANY };
             if !one_signed(found) {
                 let region = match piece.program.cost() {
-                    // Of a leaf that is asked for little, its slopes and the values at the ends say
-                    // all.
-                    1 if single && value.lo() > 0.0 => Region::Inside,
-                    1 if single && value.hi() < 0.0 => Region::Outside,
+                    // What a leaf has told of the way to it need not be asked for again; and of one
+                    // that is asked for little, its slopes and the values at the ends say all.
+                    _ if single && value.lo() > 0.0 => Region::Inside,
+                    _ if single && value.hi() < 0.0 => Region::Outside,
                     1 if single && found != Interval::ALL => piece.program.simplified(&zone()),
                     _ => piece.program.narrow_zone(&zone()),
                 };

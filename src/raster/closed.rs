@@ -88,25 +88,46 @@ fn by_position(mesh: &Mesh) -> Vec<u32> {
     first
 }
 
-/// The normal of a triangle at a point on it: between those of the corners, which at a crease are
-/// those of its side, or its own; 0 where it has none.
-#[inline]
-pub(super) fn normal(mesh: &Mesh, triangle: u32, point: DVec3) -> DVec3 {
-    let Some(&corners) = mesh.triangles().get(triangle as usize) else { return DVec3::ZERO };
-    let [a, b, c] = mesh.corners(corners);
-    let area = (b - a).cross(c - a);
-    let [na, nb, nc] = match (mesh.corner_normals(), mesh.normals()) {
-        (Some(all), _) => all[triangle as usize],
-        (None, Some(all)) => corners.map(|i| all[i as usize]),
-        (None, None) => return area.normalize_or_zero(),
-    };
-    let square = area.length_squared();
-    if square == 0.0 {
-        return DVec3::ZERO;
+/// How the normal of a triangle changes over it: between those of the corners, which at a crease are
+/// those of its side.
+pub(crate) struct Slant {
+    /// A corner, and the normal there, of any length.
+    corner: DVec3,
+    normal: DVec3,
+    /// The shares of the other corners rise along these, and the normal by so much with each.
+    along: [DVec3; 2],
+    by: [DVec3; 2],
+}
+
+impl Slant {
+    /// That of a triangle; of one that has no area, and of none, the normal is 0.
+    #[inline]
+    pub(crate) fn new(mesh: &Mesh, triangle: u32) -> Slant {
+        let even = |normal: DVec3| Slant { corner: DVec3::ZERO, normal, along: [DVec3::ZERO; 2], by: [DVec3::ZERO; 2] };
+        let Some(&corners) = mesh.triangles().get(triangle as usize) else { return even(DVec3::ZERO) };
+        let [a, b, c] = mesh.corners(corners);
+        let (ab, ac) = (b - a, c - a);
+        let area = ab.cross(ac);
+        let normals = match (mesh.corner_normals(), mesh.normals()) {
+            (Some(all), _) => all[triangle as usize],
+            (None, Some(all)) => corners.map(|i| all[i as usize]),
+            (None, None) => return even(area),
+        };
+        let square = area.length_squared();
+        if square == 0.0 {
+            return even(DVec3::ZERO);
+        }
+        // Barycentric coordinates by parts of the area.
+        let share = area * square.recip();
+        let [na, nb, nc] = normals.map(|normal| normal.as_dvec3());
+        Slant { corner: a, normal: na, along: [ac.cross(share), share.cross(ab)], by: [nb - na, nc - na] }
     }
-    // Barycentric coordinates by parts of the area.
-    let share = area * square.recip();
-    let v = (point - a).cross(c - a).dot(share);
-    let w = (b - a).cross(point - a).dot(share);
-    (na.as_dvec3() * (1.0 - v - w) + nb.as_dvec3() * v + nc.as_dvec3() * w).normalize_or_zero()
+
+    /// The unit normal at a point of the triangle.
+    #[inline]
+    pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
+        let Slant { corner, normal, along: [v, w], by: [b, c] } = self;
+        let from = point - *corner;
+        (*normal + from.dot(*v) * *b + from.dot(*w) * *c).normalize_or_zero()
+    }
 }

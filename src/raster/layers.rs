@@ -146,6 +146,13 @@ pub trait LayerSource: Sync {
         DVec3::ZERO
     }
 
+    /// The same at several points of a face, one for each of `normals`.
+    fn normals(&self, face: u32, points: &[DVec3], normals: &mut [DVec3]) {
+        for (normal, point) in normals.iter_mut().zip(points) {
+            *normal = self.normal(face, *point);
+        }
+    }
+
     /// Whether a ray leaves the solid as often as it enters, which is what joins ask for.
     fn is_closed(&self) -> bool {
         true

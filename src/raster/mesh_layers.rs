@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::buffers::SurfaceId;
-use super::closed::{ClosedMesh, normal};
+use super::closed::{ClosedMesh, Slant};
 use super::layers::{Fragments, LayerSource, Tile};
 use super::target::Target;
 use super::triangle::{Batch, Triangle};
@@ -181,7 +181,12 @@ impl LayerSource for MeshLayers<'_> {
     }
 
     fn normal(&self, face: u32, point: DVec3) -> DVec3 {
-        normal(self.mesh, face, point)
+        Slant::new(self.mesh, face).normal(point)
+    }
+
+    fn normals(&self, face: u32, points: &[DVec3], normals: &mut [DVec3]) {
+        let slant = Slant::new(self.mesh, face);
+        normals.iter_mut().zip(points).for_each(|(normal, point)| *normal = slant.normal(*point));
     }
 
     fn is_closed(&self) -> bool {

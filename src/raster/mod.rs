@@ -51,4 +51,5 @@ pub use layers::{Facing, Fragments, LANES, LayerSource, Tile};
 pub use mesh_layers::MeshLayers;
 pub use view::RasterView;
 
+pub(crate) use closed::Slant;
 pub(crate) use target::Target;

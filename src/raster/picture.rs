@@ -25,6 +25,9 @@ const FILL: f64 = 0.18;
 const SKY: f64 = 0.38;
 const GROUND: f64 = 0.14;
 
+/// Pixels of a row of a tile.
+const SIDE: usize = Tile::SIDE as usize;
+
 /// Grey levels of the nearest and of the farthest depth of a picture of depth.
 const NEAREST: f64 = 245.0;
 const FARTHEST: f64 = 50.0;
@@ -48,28 +51,49 @@ impl Buffers {
         let (key, fill) = (towards(-0.62, 0.66, 0.62), towards(0.85, 0.05, 0.45));
         let colors: Vec<Vec3> =
             colors.iter().map(|color| Vec3::from_array(color.map(|c| to_linear(f32::from(c) / 255.0)))).collect();
-        let pixel = |target: &Target, i: usize, x: u32, y: u32| {
-            let depth = target.depth[i];
-            if target.operand[i] == NOTHING || depth == f64::INFINITY {
-                return Ok([0; 4]);
-            }
-            let id = target.id(i);
-            let number = id.operand as usize;
-            let Some(layers) = operands.get(number) else {
-                return Err(RasterError::Operand { operand: number, operands: operands.len() });
-            };
-            let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-            let outward = layers.normal(id.face, view.point(x, y, depth));
-            let normal = match id.facing {
-                _ if outward == DVec3::ZERO => -view.direction(x, y),
-                Facing::Front => outward,
-                Facing::Back => -outward,
-            };
+        let shade = |color: Vec3, normal: DVec3| {
             let lit = |direction: DVec3| normal.dot(direction).max(0.0);
             let share = 0.5 * (1.0 + normal.dot(up));
             let light = KEY * lit(key) + FILL * lit(fill) + SKY * share + GROUND * (1.0 - share);
-            let [r, g, b] = (colors[number % colors.len()] * light as f32).to_array().map(to_byte);
-            Ok([r, g, b, 255])
+            let [r, g, b] = (color * light as f32).to_array().map(to_byte);
+            [r, g, b, 255]
+        };
+        // Neighbours of a row that show one face are asked for their normals together.
+        let row = |target: &Target, i: usize, left: u32, y: u32, out: &mut [[u8; 4]]| {
+            let (mut points, mut normals) = ([DVec3::ZERO; SIDE], [DVec3::ZERO; SIDE]);
+            let point = view.points(f64::from(y) + 0.5);
+            let is_seen = |i: usize| target.operand[i] != NOTHING && target.depth[i] < f64::INFINITY;
+            let mut at = 0;
+            while at < out.len() {
+                if !is_seen(i + at) {
+                    at += 1;
+                    continue;
+                }
+                let id = target.id(i + at);
+                let same = |n: &usize| is_seen(i + n) && target.id(i + n) == id;
+                let count = (at..out.len()).take_while(same).count();
+                let number = id.operand as usize;
+                let Some(layers) = operands.get(number) else {
+                    return Err(RasterError::Operand { operand: number, operands: operands.len() });
+                };
+                for (to, n) in points[..count].iter_mut().zip(at..) {
+                    *to = point(f64::from(left + n as u32) + 0.5, target.depth[i + n]);
+                }
+                layers.normals(id.face, &points[..count], &mut normals[..count]);
+                let color = colors[number % colors.len()];
+                for ((out, outward), n) in out[at..at + count].iter_mut().zip(&normals[..count]).zip(at..) {
+                    let normal = match id.facing {
+                        _ if *outward == DVec3::ZERO => {
+                            -view.direction(f64::from(left + n as u32) + 0.5, f64::from(y) + 0.5)
+                        }
+                        Facing::Front => *outward,
+                        Facing::Back => -*outward,
+                    };
+                    *out = shade(color, normal);
+                }
+                at += count;
+            }
+            Ok(())
         };
         let (width, height) = (view.width(), view.height());
         let [across, _] = Tile::grid(width, height);
@@ -78,13 +102,9 @@ impl Buffers {
         let bands = pixels.par_chunks_mut((width * Tile::SIDE) as usize).zip(self.tiles.par_chunks(across as usize));
         bands.enumerate().try_for_each(|(band, (pixels, tiles))| {
             let top = band as u32 * Tile::SIDE;
-            for ((row, line), y) in pixels.chunks_mut(width as usize).enumerate().zip(top..) {
-                for (target, (part, left)) in
-                    tiles.iter().zip(line.chunks_mut(Tile::SIDE as usize).zip((0..).step_by(Tile::SIDE as usize)))
-                {
-                    for ((column, out), x) in part.iter_mut().enumerate().zip(left..) {
-                        *out = pixel(target, row * Tile::SIDE as usize + column, x, y)?;
-                    }
+            for ((line, pixels), y) in pixels.chunks_mut(width as usize).enumerate().zip(top..) {
+                for (target, (part, left)) in tiles.iter().zip(pixels.chunks_mut(SIDE).zip((0..).step_by(SIDE))) {
+                    row(target, line * SIDE, left, y, part)?;
                 }
             }
             Ok::<_, RasterError>(())

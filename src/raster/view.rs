@@ -174,11 +174,37 @@ impl RasterView {
         self.camera.eye + across * right + above * up + depth * forward
     }
 
+    /// The points of a row, at pixel coordinate y, by x and depth.
+    #[inline]
+    pub(super) fn points(&self, y: f64) -> impl Fn(f64, f64) -> DVec3 + use<> {
+        let [right, up, forward] = self.axes;
+        let (unit, half) = (1.0 / self.scale, 0.5 * f64::from(self.width));
+        let (right, above) = (unit * right, (0.5 * f64::from(self.height) - y) * unit * up);
+        let (eye, parallel) = (self.camera.eye, self.parallel);
+        move |x, depth| {
+            let across = (x - half) * right + above;
+            if parallel { eye + across + depth * forward } else { eye + depth * (across + forward) }
+        }
+    }
+
     /// The length along the ray through pixel coordinates (x, y) to a depth, both in length
     /// units.
     #[must_use]
     pub fn distance(&self, x: f64, y: f64, depth: f64) -> f64 {
         if self.parallel { depth } else { self.point(x, y, depth).distance(self.camera.eye) }
+    }
+
+    /// The point at pixel coordinates with a depth, how far along its ray it is, and the unit vector
+    /// along that.
+    #[inline]
+    pub(crate) fn sight(&self, x: f64, y: f64, depth: f64) -> (DVec3, f64, DVec3) {
+        let point = self.point(x, y, depth);
+        if self.parallel {
+            return (point, depth, self.axes[2]);
+        }
+        let way = point - self.camera.eye;
+        let distance = way.length();
+        (point, distance, way / distance)
     }
 
     /// The direction of the ray at pixel coordinates (x, y), of length 1.

@@ -193,6 +193,7 @@ const UNITED: usize = 8;
 /// whose values are blended: of large boxes a long narrowing tells little, as margins add up.
 const DEAR: usize = 8;
 const AT_ONCE: u32 = BOXES_AT_ONCE.ilog2();
+const CROWD_AT_ONCE: u32 = 5;
 
 /// Where as many halvings have left more than three quarters of the cost, more are of no use.
 const STALE: u32 = 6;
@@ -304,9 +305,9 @@ impl Cell {
     /// Its halves, made when they are first asked for.
     pub(super) fn halves(&self) -> &Halves {
         self.halves.get_or_init(|| {
-            let crowded = (self.leaves > CROWD && self.program.is_blend()).then_some([true; 3]);
-            let axes = self.program.dear_axes(DEAR).or(crowded);
-            let (axes, times) = axes.map_or(([true; 3], 1), |axes| (axes, AT_ONCE));
+            let crowded = (self.leaves > CROWD && self.program.is_blend()).then_some(([true; 3], CROWD_AT_ONCE));
+            let dear = self.program.dear_axes(DEAR).map(|axes| (axes, AT_ONCE));
+            let (axes, times) = dear.or(crowded).unwrap_or(([true; 3], 1));
             let mut boxes = Vec::new();
             self.around.boxes(&self.bounds, axes, times, &mut boxes);
             if boxes.len() > 2 {

@@ -19,7 +19,7 @@ use super::gbuffer::{Surface, Window};
 use super::scene::Scene;
 use super::settings::{RenderError, RenderSettings, setting};
 use crate::mesh::Subject;
-use crate::raster::{Facing, LayerSource, MeshLayers, RasterError, RasterView, SurfaceId, Target, Tile};
+use crate::raster::{Facing, LayerSource, MeshLayers, RasterError, RasterView, Slant, SurfaceId, Target, Tile};
 use crate::{Camera, CellSize, Mesh, MeshSettings, Run, ThinFeatures};
 
 /// Where something may be thinner than a cell, cells of a quarter of the size are tried.
@@ -109,9 +109,11 @@ impl<'a> Draft<'a> {
         bands.into_par_iter().for_each_init(Target::new, |target, (top, band)| {
             let bottom = top + band.len() as u32 / window.width;
             for tile in row_of_tiles(&self.pixels, top / Tile::SIDE) {
+                let mut last = None;
                 self.pixels.seen(&tile, target, |[x, y], id, depth| {
                     if (top..bottom).contains(&y) {
-                        band[((y - top) * window.width + x) as usize] = self.surface(&self.pixels, [x, y], id, depth);
+                        let seen = self.surface(&self.pixels, &mut last, [x, y], id, depth);
+                        band[((y - top) * window.width + x) as usize] = seen;
                     }
                 });
             }
@@ -143,10 +145,11 @@ impl<'a> Draft<'a> {
                 if pixels.all(|(x, y)| number(x * columns, y * columns).is_none()) {
                     continue;
                 }
+                let mut last = None;
                 layers.seen(&tile, target, |[x, y], id, depth| {
                     if let Some(number) = number(x, y) {
                         let place = number * columns * columns + y % columns * columns + x % columns;
-                        found.push((place, self.surface(layers, [x, y], id, depth)));
+                        found.push((place, self.surface(layers, &mut last, [x, y], id, depth)));
                     }
                 });
             }
@@ -160,14 +163,23 @@ impl<'a> Draft<'a> {
         surfaces
     }
 
-    /// What a pixel of a view sees, as a ray through its middle would tell it.
+    /// What a pixel of a view sees, as a ray through its middle would tell it; `last` is the face
+    /// that the pixel before it has shown.
     #[inline]
-    fn surface(&self, layers: &MeshLayers<'_>, [x, y]: [u32; 2], id: SurfaceId, depth: f64) -> Surface {
-        let view = layers.view();
-        let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-        let point = view.point(x, y, depth);
-        let (distance, viewer) = (view.distance(x, y, depth), -view.direction(x, y));
-        let normal = layers.normal(id.face, point);
+    fn surface(
+        &self,
+        layers: &MeshLayers<'_>,
+        last: &mut Option<(u32, Slant)>,
+        [x, y]: [u32; 2],
+        id: SurfaceId,
+        depth: f64,
+    ) -> Surface {
+        let (point, distance, direction) = layers.view().sight(f64::from(x) + 0.5, f64::from(y) + 0.5, depth);
+        let viewer = -direction;
+        if last.as_ref().is_none_or(|(face, _)| *face != id.face) {
+            *last = Some((id.face, Slant::new(self.mesh, id.face)));
+        }
+        let normal = last.as_ref().map_or(DVec3::ZERO, |(_, slant)| slant.normal(point));
         let towards = if id.facing == Facing::Front { normal } else { -normal };
         let cosine = towards.dot(viewer);
         let normal = if cosine >= FACING || normal == DVec3::ZERO {

@@ -87,6 +87,10 @@ impl Known {
             // How steep it is does not matter then.
             return Known { slopes: Slopes { rises, falls, ..Slopes::ANY }, sides: None };
         }
+        // One leaf that takes long has told its slopes all over the box.
+        if let Some(slopes) = crossing.filter(|_| program.leaf_count() == 1 && program.cost() > 1) {
+            return Known { slopes, sides: None };
+        }
         let zero = Interval::point(0.0);
         let side = |axis: usize| Dual::new(Interval::new(room.min[axis], room.max[axis]), [along[axis], zero, zero]);
         let slopes = program.evaluate([side(0), side(1), side(2)], &mut Vec::new()).gradient()[0];

@@ -450,7 +450,6 @@ const STEEP: f64 = 4.0;
 /// The same where the values are steeper, or the slopes are without bound: many a ray is divided by
 /// intervals then.
 const BLIND: usize = 16;
-const SEARCHED_BLINDLY: usize = 64;
 
 /// Whether `count` rays are better off in the halves of a cell, where slopes are `known`.
 fn divides(cell: &Cell, count: usize, known: &Known) -> bool {
@@ -469,9 +468,8 @@ fn divides(cell: &Cell, count: usize, known: &Known) -> bool {
     let steepest = known.slopes.value.magnitude();
     let most = match (cost > leaves, steepest < STEEP) {
         (true, true) => SEARCHED,
-        (true, false) => SEARCHED_BLINDLY,
         (false, true) => RAYS,
-        (false, false) => BLIND,
+        (_, false) => BLIND,
     };
     let much = if one_way { cost > 1 && !cell.is_stale() && count * cost > 8192 } else { count * leaves > most };
     share > FINEST && much

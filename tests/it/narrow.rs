@@ -1,8 +1,11 @@
 //! Narrowing: sound over random solids and boxes, and tight on the shared models.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::DVec3;
 use rvachev::{
-    Bounds, Solid,
+    Bounds, Interval, ParamError, RFunction, Solid,
+    field::{Field, Real},
     program::{Evaluator, Program, Region, Tape},
 };
 
@@ -274,6 +277,55 @@ fn only_what_is_near_is_left() {
         other => panic!("{other:?}"),
     }
     assert_eq!(solid.region(&near).map(|r| matches!(r, Region::Surface(_))), Ok(true));
+}
+
+/// A ball that counts how often it is asked for a range.
+#[derive(Debug)]
+struct Asked(&'static AtomicUsize);
+
+impl Field for Asked {
+    fn name(&self) -> &'static str {
+        "asked"
+    }
+
+    #[inline(always)]
+    fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+        -(x.square() + y.square() + z.square()).sqrt() + 1.0
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds::new(DVec3::NEG_ONE, DVec3::ONE)
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Ok(())
+    }
+
+    fn range(&self, region: [Interval; 3]) -> Interval {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        self.eval(region)
+    }
+}
+
+/// What an operand has decided, those after it are not asked about.
+#[test]
+fn what_is_decided_is_not_asked_about() {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let plate = Solid::cuboid([4.0, 4.0, 1.0]);
+    let solids = [
+        (plate.intersection(Solid::new(Asked(&COUNT)), RFunction::MIN_MAX), DVec3::new(0.0, 0.0, 0.7)),
+        (plate.union(Solid::new(Asked(&COUNT)), RFunction::MIN_MAX), DVec3::new(0.0, 0.0, 0.2)),
+    ];
+    for (number, (solid, decided)) in solids.iter().enumerate() {
+        let program = solid.surface_program().unwrap();
+        let asked = |centre: DVec3| {
+            let before = COUNT.load(Ordering::Relaxed);
+            let region = program.narrow(&Bounds::from_center(centre, DVec3::splat(0.1)));
+            (matches!(region, Region::Surface(_)), COUNT.load(Ordering::Relaxed) - before)
+        };
+        assert_eq!(asked(*decided), (false, 0), "{number}");
+        assert_eq!(asked(DVec3::new(0.0, 0.0, 0.5)).1, 1, "{number}");
+    }
 }
 
 /// A chain of smooth joins of one kind, its operands small balls and blocks here and there.

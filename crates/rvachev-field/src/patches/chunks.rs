@@ -74,6 +74,23 @@ fn unscaled(placement: &Placement) -> Placement {
     unscaled
 }
 
+/// How many points there are up to those that are the same as the last: chunks are filled up with
+/// copies of it.
+#[inline(always)]
+fn distinct<E: Element>([x, y, z]: [&[E]; 3], here: ops::Range<usize>) -> usize {
+    let is_same = |i: &usize| x[*i] == x[*i - 1] && y[*i] == y[*i - 1] && z[*i] == z[*i - 1];
+    here.len() - (here.start + 1..here.end).rev().take_while(is_same).count()
+}
+
+/// Gives those from one on what the one before them has.
+#[inline(always)]
+fn repeat<T: Copy>(all: &mut [T], from: usize) {
+    let (known, rest) = all.split_at_mut(from);
+    if let Some(last) = known.last() {
+        rest.fill(*last);
+    }
+}
+
 /// Loads a vector of each column.
 #[inline(always)]
 fn load<L: Lanes>(simd: L::Token, [x, y, z]: [&[L::Element]; 3], here: ops::Range<usize>) -> [L; 3] {
@@ -188,8 +205,10 @@ fn values_on<L: Lanes<Element: Element> + Packet>(
     let mut from = 0;
     while from < out.len() {
         let len = BLOCK.min(out.len() - from);
-        work.find(simd, packets, points, out, from..from + len, false);
-        work.block.unsorted(&work.found.squares, &mut squares[..len]);
+        let own = L::WIDTH * distinct(points, from..from + len).div_ceil(L::WIDTH);
+        work.find(simd, packets, points, out, from..from + own, false);
+        work.block.unsorted(&work.found.squares, &mut squares[..own]);
+        repeat(&mut squares[..len], own);
         take_sides(packets, points, &squares, &mut out[from..from + len], from);
         let mut at = 0;
         while at < len {
@@ -228,11 +247,14 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
     let mut from = 0;
     while from < out[0].len() {
         let len = BLOCK.min(out[0].len() - from);
-        work.find(simd, packets, points, &*out[0], from..from + len, true);
+        let own = L::WIDTH * distinct(points, from..from + len).div_ceil(L::WIDTH);
+        work.find(simd, packets, points, &*out[0], from..from + own, true);
         for (way, sorted) in ways.iter_mut().zip(&work.found.ways) {
-            work.block.unsorted(sorted, &mut way[..len]);
+            work.block.unsorted(sorted, &mut way[..own]);
+            repeat(&mut way[..len], own);
         }
-        work.block.unsorted(&work.found.patches, &mut patches[..len]);
+        work.block.unsorted(&work.found.patches, &mut patches[..own]);
+        repeat(&mut patches[..len], own);
         for (i, square) in squares[..len].iter_mut().enumerate() {
             let [x, y, z] = [0, 1, 2].map(|axis| ways[axis][i]);
             *square = x * x + y * y + z * z;

@@ -54,6 +54,33 @@ fn values(field: &dyn AnyField, columns: &[Vec<f32>; 3], placement: &Placement) 
     out
 }
 
+/// Chunks are filled up with copies of their last point: these are not searched for, and told.
+#[test]
+fn copies_of_the_last_point_have_its_value() {
+    let mut random = Random(7);
+    for field in [ball(5), slab(DVec3::new(0.5, 0.25, 0.75))] {
+        for count in [1, 2, 7, 8, 9, 40, 63] {
+            let own = columns(&mut random, 3.0, count);
+            let filled = own.each_ref().map(|column| {
+                let copies = vec![column[count - 1]; CHUNK - count];
+                [&column[..], &copies].concat()
+            });
+            let lanes = values(&field, &filled, &Placement::IDENTITY);
+            let mut slopes = [(); 4].map(|()| vec![0.0f32; CHUNK]);
+            let points = filled.each_ref().map(|column| &**column);
+            let out = slopes.each_mut().map(|column| &mut **column);
+            field.gradients(Chunk { points, placement: &Placement::IDENTITY, out });
+            for i in 0..CHUNK {
+                let at = i.min(count - 1);
+                let value = AnyField::value(&field, [0, 1, 2].map(|axis| f64::from(own[axis][at])));
+                assert!((f64::from(lanes[i]) - value).abs() <= 2.0 * field.roundoff(3.0), "{i} of {count}");
+                let same = slopes.iter().all(|column| column[i] == column[at]);
+                assert!(same && (slopes[0][i] - lanes[i]).abs() <= 1e-4, "{i} of {count}");
+            }
+        }
+    }
+}
+
 /// Random points as columns.
 fn columns(random: &mut Random, size: f64, count: usize) -> [Vec<f32>; 3] {
     let points: Vec<DVec3> = (0..count).map(|_| random.point(size)).collect();
