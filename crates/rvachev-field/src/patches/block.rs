@@ -44,7 +44,8 @@ impl<E: Element> Block<E> {
         }
     }
 
-    /// Sorts the points, of which `len` are in use, and their numbers; packets are longest along an axis.
+    /// Sorts the points, of which `len` are in use, and their numbers; packets are longest along an
+    /// axis.
     #[inline(always)]
     pub(super) fn sort(&mut self, len: usize, along: usize) {
         let [x, y, z] = &mut self.columns;

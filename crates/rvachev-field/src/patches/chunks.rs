@@ -24,7 +24,8 @@ impl SurfaceDistance {
     pub(super) fn values32(&self, chunk: Chunk<'_, f32, 1>, band: f64) {
         let Chunk { points, placement, out: [out] } = chunk;
         let packets = self.packets(placement, band);
-        // How far points are tells how far their signs hold, but where these tell what is searched for.
+        // How far points are tells how far their signs hold, but where these tell what is searched
+        // for.
         let are_last = band == f64::INFINITY && self.side.is_none();
         if !are_last {
             self.signs32(points, placement, out);
@@ -110,8 +111,8 @@ fn load<L: Lanes>(simd: L::Token, [x, y, z]: [&[L::Element]; 3], here: ops::Rang
     [L::load(simd, &x[here.clone()]), L::load(simd, &y[here.clone()]), L::load(simd, &z[here])]
 }
 
-/// Fills a block with points of the surface's frame, sorted, and says which patch its middle is near,
-/// and where searches are to begin.
+/// Fills a block with points of the surface's frame, sorted, and says which patch its middle is
+/// near, and where searches are to begin.
 #[inline(always)]
 fn fill<L: Lanes<Element: Element>>(
     simd: L::Token,
