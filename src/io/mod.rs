@@ -47,6 +47,7 @@ mod text;
 #[cfg(feature = "threemf")]
 mod threemf;
 pub(crate) mod unit;
+mod watched;
 
 use std::io;
 

@@ -5,11 +5,11 @@
 //!
 //! Source: G. Turk, *The PLY Polygon File Format* (1994).
 
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 
 use crate::geom::PointCloud;
 
-/// Writes a point cloud as PLY.
+/// Writes a point cloud as PLY. The writer need not be buffered.
 ///
 /// ```
 /// use glam::DVec3;
@@ -25,7 +25,8 @@ use crate::geom::PointCloud;
 /// # Errors
 ///
 /// Those of the writer.
-pub fn write_ply_points(cloud: &PointCloud, mut out: impl Write) -> io::Result<()> {
+pub fn write_ply_points(cloud: &PointCloud, out: impl Write) -> io::Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, out);
     writeln!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}", cloud.len())?;
     for axis in ["x", "y", "z"] {
         writeln!(out, "property double {axis}")?;
@@ -53,5 +54,5 @@ pub fn write_ply_points(cloud: &PointCloud, mut out: impl Write) -> io::Result<(
         }
         out.write_all(&record)?;
     }
-    Ok(())
+    out.flush()
 }

@@ -13,6 +13,7 @@ use super::absent::write_3mf;
 use super::absent::write_exr;
 use super::file::write_whole;
 use super::png::{Rows, write_png_rows};
+use super::watched::Watched;
 #[cfg(feature = "threemf")]
 use super::write_3mf;
 #[cfg(feature = "exr")]
@@ -22,6 +23,7 @@ use super::{
     write_stl_ascii, write_svg,
 };
 use crate::geom::{Image, Mesh, PointCloud, Polyline};
+use crate::{Cancelled, Run};
 
 /// Why a file could not be saved. Whatever was at the path before is still there, and no
 /// half-written file is left.
@@ -58,6 +60,9 @@ pub enum SaveError {
         /// The cause.
         source: io::Error,
     },
+    /// The run was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 pub(super) fn unknown(extension: &str) -> String {
@@ -92,7 +97,10 @@ pub struct SaveSettings {
 }
 
 /// A writer of one format, for `T` by settings `S`.
-type Writer<T, S> = fn(&T, &S, &mut BufWriter<File>) -> io::Result<()>;
+type Writer<T, S> = fn(&T, &S, &mut Watched<'_, &mut BufWriter<File>>) -> io::Result<()>;
+
+/// Bytes of a file to a vertex, a point or a triangle, about.
+const BYTES: u64 = 30;
 
 /// The formats of a mesh, by extension.
 const MESH_FORMATS: [(&str, Writer<Mesh, SaveSettings>); 5] = [
@@ -136,7 +144,31 @@ impl Mesh {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save_with(&self, path: impl AsRef<Path>, settings: &SaveSettings) -> Result<(), SaveError> {
-        save(self, settings, path.as_ref(), &MESH_FORMATS)
+        self.save_on(path, settings, &Run::default())
+    }
+
+    /// [`save_with`](Mesh::save_with) on a [`Run`], which is told roughly how much is written, and may
+    /// be cancelled: then whatever was at the path before is still there.
+    ///
+    /// ```
+    /// use rvachev::error::SaveError;
+    /// use rvachev::{CancelToken, MeshSettings, Run, SaveSettings, Solid};
+    ///
+    /// let run = Run { cancel: CancelToken::new(), ..Run::default() };
+    /// run.cancel.cancel();
+    /// let path = std::env::temp_dir().join("rvachev_save_on.stl");
+    /// let ball = Solid::sphere(1.0).mesh(&MeshSettings::default())?;
+    /// let stopped = ball.save_on(&path, &SaveSettings::default(), &run);
+    /// assert!(matches!(stopped, Err(SaveError::Cancelled(_))) && !path.exists());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause, or that the work was cancelled.
+    pub fn save_on(&self, path: impl AsRef<Path>, settings: &SaveSettings, run: &Run) -> Result<(), SaveError> {
+        let count = self.positions().len() as u64 + self.triangles().len() as u64;
+        save(self, settings, path.as_ref(), &MESH_FORMATS, count * BYTES, run)
     }
 }
 
@@ -184,7 +216,7 @@ impl<P: Pixel> Image<P> {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        save(self, &(), path.as_ref(), P::FORMATS)
+        save(self, &(), path.as_ref(), P::FORMATS, 0, &Run::default())
     }
 }
 
@@ -202,6 +234,8 @@ impl Image {
             &(),
             path.as_ref(),
             &[("gif", |(pictures, pause), (), out| write_gif(pictures, *pause, out))],
+            0,
+            &Run::default(),
         )
     }
 }
@@ -215,9 +249,21 @@ impl PointCloud {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        save(self, &(), path.as_ref(), &[("ply", |cloud, (), out| write_ply_points(cloud, out))])
+        self.save_on(path, &Run::default())
+    }
+
+    /// [`save`](PointCloud::save) on a [`Run`], which is told roughly how much is written, and may be
+    /// cancelled: then whatever was at the path before is still there.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause, or that the work was cancelled.
+    pub fn save_on(&self, path: impl AsRef<Path>, run: &Run) -> Result<(), SaveError> {
+        let formats: &[(&str, Writer<PointCloud, ()>)] = &[("ply", |cloud, (), out| write_ply_points(cloud, out))];
+        save(self, &(), path.as_ref(), formats, self.len() as u64 * BYTES, run)
     }
 }
+
 impl Polyline {
     /// Saves polylines as a drawing in the format that the extension stands for: `.svg` or
     /// `.dxf`.
@@ -233,15 +279,30 @@ impl Polyline {
             &(),
             path.as_ref(),
             &[("dxf", |lines, (), out| write_dxf(lines, out)), ("svg", |lines, (), out| write_svg(lines, out))],
+            0,
+            &Run::default(),
         )
     }
 }
 
-/// Saves `data` with the writer that `formats` has for the extension, in upper or lower case.
-fn save<T, S>(data: &T, settings: &S, path: &Path, formats: &[(&str, Writer<T, S>)]) -> Result<(), SaveError> {
+/// Saves `data` with the writer that `formats` has for the extension, in upper or lower case: so many
+/// `bytes`, about.
+fn save<T, S>(
+    data: &T,
+    settings: &S,
+    path: &Path,
+    formats: &[(&str, Writer<T, S>)],
+    bytes: u64,
+    run: &Run,
+) -> Result<(), SaveError> {
     let known: Vec<&str> = formats.iter().map(|(known, _)| *known).collect();
     let (_, write) = formats[format_of(path, &known)?];
-    saved(path, |out| write(data, settings, out))
+    let run = run.stage(0.0, 1.0);
+    let saved = saved(path, |out| write(data, settings, &mut Watched::new(out, bytes, &run.stage(0.0, 0.95))));
+    // A writer that is stopped has failed.
+    saved.map_err(|error| run.check().map_or_else(SaveError::Cancelled, |()| error))?;
+    run.report(1.0);
+    Ok(())
 }
 
 /// Saves a picture as PNG whose rows come bit by bit.

@@ -35,15 +35,20 @@ pub(crate) struct Slope {
 impl Slope {
     /// The step to where a linear function of this value and gradient is 0.
     pub(crate) fn newton(&self) -> DVec3 {
-        let square = self.gradient.length_squared();
-        let is_told = square > 1e-24 && square.is_finite() && self.value.is_finite();
-        if is_told { -self.value / square * self.gradient } else { DVec3::ZERO }
+        if self.is_told() { -self.value / self.gradient.length_squared() * self.gradient } else { DVec3::ZERO }
     }
 
-    /// How far that is; infinitely where the value or its gradient is not finite.
+    /// Whether there is a gradient, and all is finite.
+    fn is_told(&self) -> bool {
+        let square = self.gradient.length_squared();
+        square > 1e-24 && square.is_finite() && self.value.is_finite()
+    }
+
+    /// How far that is; infinitely where the value or its gradient is not finite, or where there is
+    /// a value and no gradient.
     pub(crate) fn distance(&self) -> f64 {
-        let is_finite = self.value.is_finite() && self.gradient.is_finite();
-        if is_finite { self.newton().length() } else { f64::INFINITY }
+        let is_there = self.value == 0.0 && self.gradient.is_finite();
+        if self.is_told() || is_there { self.newton().length() } else { f64::INFINITY }
     }
 
     /// The same of something that is to be on the surface: as far as it is long where nothing is
@@ -202,11 +207,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_far() {
-        for (value, gradient) in [(1.0, DVec3::INFINITY), (f64::NAN, DVec3::X), (0.0, DVec3::NAN)] {
+    fn what_is_not_finite_or_has_no_gradient_is_far() {
+        let flat = (0.5, DVec3::ZERO);
+        for (value, gradient) in [(1.0, DVec3::INFINITY), (f64::NAN, DVec3::X), (0.0, DVec3::NAN), flat] {
             let slope = Slope { value, gradient };
             assert_eq!((slope.distance(), slope.distance_of(2.0)), (f64::INFINITY, 2.0), "{slope:?}");
             assert_eq!(slope.newton(), DVec3::ZERO, "{slope:?}");
         }
+        assert_eq!(Slope { value: 0.0, gradient: DVec3::ZERO }.distance(), 0.0);
     }
 }

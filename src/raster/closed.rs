@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::error::RasterError;
-use crate::Mesh;
+use crate::{Cancelled, Mesh, Run};
 
 /// A mesh whose surface is closed and faces outward, as every join of layers needs it.
 ///
@@ -36,10 +36,27 @@ impl<'a> ClosedMesh<'a> {
     ///
     /// [`RasterError::Open`] or [`RasterError::InsideOut`].
     pub fn new(mesh: &'a Mesh) -> Result<ClosedMesh<'a>, RasterError> {
-        if !uneven_edges(mesh.triangles()).is_empty() {
-            let welded = by_position(mesh);
+        ClosedMesh::new_with(mesh, &Run::default())
+    }
+
+    /// [`new`](ClosedMesh::new) on a [`Run`].
+    ///
+    /// # Errors
+    ///
+    /// [`RasterError::Open`] or [`RasterError::InsideOut`], or that the work was cancelled.
+    pub fn new_with(mesh: &'a Mesh, run: &Run) -> Result<ClosedMesh<'a>, RasterError> {
+        let run = run.stage(0.0, 1.0);
+        let closed = run.install(|| ClosedMesh::seen(mesh, &run))?;
+        run.report(1.0);
+        Ok(closed)
+    }
+
+    fn seen(mesh: &'a Mesh, run: &Run) -> Result<ClosedMesh<'a>, RasterError> {
+        let [to_look, to_weld, to_compare] = run.stages([0.4, 0.3, 0.3]);
+        if !uneven_edges(mesh.triangles(), &to_look)?.is_empty() {
+            let welded = by_position(mesh, &to_weld)?;
             let triangles: Vec<[u32; 3]> = mesh.triangles().par_iter().map(|t| t.map(|i| welded[i as usize])).collect();
-            let uneven = uneven_edges(&triangles);
+            let uneven = uneven_edges(&triangles, &to_compare)?;
             if let Some(&first) = uneven.first() {
                 let at = mesh.positions()[first as usize].as_dvec3();
                 return Err(RasterError::Open { edges: uneven.len(), at });
@@ -60,7 +77,8 @@ impl<'a> ClosedMesh<'a> {
 }
 
 /// For every edge that is not used as often in one direction as in the other, its lower end.
-fn uneven_edges(triangles: &[[u32; 3]]) -> Vec<u32> {
+fn uneven_edges(triangles: &[[u32; 3]], run: &Run) -> Result<Vec<u32>, Cancelled> {
+    run.check()?;
     // Both ends, lower first, and the direction in the lowest bit.
     let mut uses: Vec<(u64, bool)> = triangles
         .par_iter()
@@ -68,24 +86,31 @@ fn uneven_edges(triangles: &[[u32; 3]]) -> Vec<u32> {
         .filter(|[from, to]| from != to)
         .map(|[from, to]| (u64::from(from.min(to)) << 32 | u64::from(from.max(to)), from > to))
         .collect();
+    run.check()?;
+    run.report(0.2);
     uses.par_sort_unstable();
+    run.check()?;
+    run.report(0.8);
     let is_uneven = |edge: &&[(u64, bool)]| 2 * edge.iter().filter(|e| e.1).count() != edge.len();
-    uses.chunk_by(|a, b| a.0 == b.0).filter(is_uneven).map(|edge| (edge[0].0 >> 32) as u32).collect()
+    Ok(uses.chunk_by(|a, b| a.0 == b.0).filter(is_uneven).map(|edge| (edge[0].0 >> 32) as u32).collect())
 }
 
 /// For every vertex the first one at its position.
-fn by_position(mesh: &Mesh) -> Vec<u32> {
+fn by_position(mesh: &Mesh, run: &Run) -> Result<Vec<u32>, Cancelled> {
+    run.check()?;
     // Adding 0 makes −0 and 0 the same.
     let key = |i: u32| mesh.positions()[i as usize].to_array().map(|x| (x + 0.0).to_bits());
     let mut order: Vec<u32> = (0..mesh.positions().len() as u32).collect();
     order.par_sort_unstable_by_key(|&i| (key(i), i));
+    run.check()?;
+    run.report(0.8);
     let mut first = vec![0; order.len()];
     for same in order.chunk_by(|&a, &b| key(a) == key(b)) {
         for &i in same {
             first[i as usize] = same[0];
         }
     }
-    first
+    Ok(first)
 }
 
 /// How the normal of a triangle changes over it: between those of the corners, which at a crease are

@@ -5,14 +5,15 @@ mod fuzz;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 
 use glam::{DVec3, Vec3};
-use rvachev::error::ReadError;
+use rvachev::error::{LoadError, ReadError, SaveError};
 use rvachev::io::{
     FileFormat, FilePlace, LoadSettings, write_3mf, write_glb, write_obj, write_ply, write_ply_points, write_stl,
     write_stl_ascii,
 };
-use rvachev::{CellSize, LengthUnit, Mesh, MeshSettings, PointCloud, SaveSettings, Solid};
+use rvachev::{CancelToken, CellSize, LengthUnit, Mesh, MeshSettings, PointCloud, Progress, Run, SaveSettings, Solid};
 
 /// What a closed solid gives, with creases, colours and owners.
 pub(super) fn part() -> Mesh {
@@ -356,4 +357,76 @@ fn extensions_are_known() {
     assert!(text(PointCloud::load("points").unwrap_err()).ends_with(".stl, .csv, .xyz"));
     let place = FilePlace::Part { part: "3D/3dmodel.model".into(), byte: 7 };
     assert_eq!(place.to_string(), "byte 7 of 3D/3dmodel.model");
+}
+
+/// A wavy sheet of 80 000 triangles.
+fn sheet() -> Mesh {
+    const N: u32 = 200;
+    let at = |v: u32| {
+        let (x, y) = ((v % (N + 1)) as f32, (v / (N + 1)) as f32);
+        Vec3::new(x, y, (0.3 * x).sin() * (0.2 * y).cos())
+    };
+    let cell = |k: u32| k / N * (N + 1) + k % N;
+    let pair = |k: u32| [[cell(k), cell(k) + 1, cell(k) + N + 2], [cell(k), cell(k) + N + 2, cell(k) + N + 1]];
+    Mesh::new((0..(N + 1) * (N + 1)).map(at).collect(), (0..N * N).flat_map(pair).collect()).unwrap()
+}
+
+/// A run that writes down what it is told, and is cancelled when that is more than `most`.
+fn run_until(most: f64) -> (Run, Arc<Mutex<Vec<f64>>>) {
+    let (cancel, told) = (CancelToken::new(), Arc::new(Mutex::new(Vec::new())));
+    let (stop, list) = (cancel.clone(), told.clone());
+    let progress = Progress::new(move |fraction| {
+        list.lock().unwrap().push(fraction);
+        if fraction > most {
+            stop.cancel();
+        }
+    });
+    (Run { cancel, progress: Some(progress), ..Run::default() }, told)
+}
+
+#[test]
+fn files_are_written_and_read_under_a_run() {
+    let (mesh, folder) = (sheet(), std::env::temp_dir().join(format!("rvachev-runs-{}", std::process::id())));
+    fs::create_dir_all(&folder).unwrap();
+    let cloud = PointCloud::new(mesh.positions().iter().map(|p| p.as_dvec3()).collect()).unwrap();
+    let (saving, loading) = (SaveSettings::default(), LoadSettings::default());
+    let is_progress = |told: &Mutex<Vec<f64>>| {
+        let told = told.lock().unwrap();
+        told.len() > 5 && told.is_sorted() && told.last() == Some(&1.0)
+    };
+    for extension in ["stl", "obj", "ply", "glb", "3mf"] {
+        let path = folder.join(format!("sheet.{extension}"));
+        let (run, told) = run_until(2.0);
+        mesh.save_on(&path, &saving, &run).unwrap();
+        assert!(is_progress(&told), "{extension}: {told:?}");
+        let (run, told) = run_until(2.0);
+        let whole = Mesh::load_on(&path, &loading, &run).unwrap();
+        assert!(is_progress(&told) && whole.triangles().len() == 80_000, "{extension}: {told:?}");
+        let (run, told) = run_until(2.0);
+        assert_eq!(PointCloud::load_on(&path, &loading, &run).unwrap().len(), cloud.len());
+        assert!(is_progress(&told), "{extension}: {told:?}");
+        // While bytes arrive, and while they are looked at.
+        for most in [0.0, 0.3] {
+            let (run, told) = run_until(most);
+            let stopped = Mesh::load_on(&path, &loading, &run);
+            assert!(matches!(stopped, Err(LoadError::Cancelled(_))), "{extension}, {most}: {told:?}");
+            let (run, told) = run_until(most);
+            let stopped = PointCloud::load_on(&path, &loading, &run);
+            assert!(matches!(stopped, Err(LoadError::Cancelled(_))), "{extension}, {most}: {told:?}");
+        }
+        fs::write(&path, "before").unwrap();
+        let (run, told) = run_until(0.0);
+        let stopped = mesh.save_on(&path, &saving, &run);
+        assert!(matches!(stopped, Err(SaveError::Cancelled(_))), "{extension}: {told:?}");
+        assert_eq!(fs::read(&path).unwrap(), b"before");
+    }
+    let path = folder.join("points.ply");
+    let (run, told) = run_until(2.0);
+    cloud.save_on(&path, &run).unwrap();
+    assert!(is_progress(&told), "{told:?}");
+    let stopped = cloud.save_on(&path, &run_until(0.0).0);
+    assert!(matches!(stopped, Err(SaveError::Cancelled(_))));
+    assert_eq!(PointCloud::load(&path).unwrap().len(), cloud.len());
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 6, "no temporary file is left");
+    fs::remove_dir_all(folder).unwrap();
 }

@@ -768,3 +768,17 @@ fn errors() {
     let buffers = view.csg(&[&layers, &nothing], &(p - q), CsgMethod::Stencil).unwrap();
     assert!(buffers.depth(15, 10).is_some());
 }
+
+#[test]
+fn closed_meshes_are_told_under_a_run() {
+    let mesh = Solid::sphere(1.0).mesh(&rvachev::MeshSettings::default()).unwrap();
+    let told = std::sync::Arc::new(std::sync::Mutex::new(Vec::new()));
+    let list = told.clone();
+    let progress = rvachev::Progress::new(move |fraction| list.lock().unwrap().push(fraction));
+    let run = rvachev::Run { progress: Some(progress), ..rvachev::Run::default() };
+    ClosedMesh::new_with(&mesh, &run).unwrap();
+    let told = told.lock().unwrap();
+    assert!(told.len() > 2 && told.is_sorted() && told.last() == Some(&1.0), "{told:?}");
+    run.cancel.cancel();
+    assert!(matches!(ClosedMesh::new_with(&mesh, &run), Err(RasterError::Cancelled(_))));
+}

@@ -125,7 +125,9 @@ fn sides_of_blocks_are_those_of_single_points() {
             let columns = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<f32>>());
             let mut out = vec![0.0_f32; points.len()];
             let points32 = columns.each_ref().map(|column| &column[..]);
-            leaf.lanes32_within(Chunk { points: points32, placement: &Placement::IDENTITY, out: [&mut out] }, 0.0);
+            // Before distances are known, and by them.
+            let band = [0.0, f64::INFINITY][n / 3 % 2];
+            leaf.lanes32_within(Chunk { points: points32, placement: &Placement::IDENTITY, out: [&mut out] }, band);
             for (p, found) in points.iter().zip(out) {
                 let value = leaf.value(p.as_dvec3().to_array());
                 sides[usize::from(value > 0.0)] += 1;
@@ -133,6 +135,76 @@ fn sides_of_blocks_are_those_of_single_points() {
             }
         }
         assert!(wrong == 0 && sides[0] > 5000 && sides[1] > 5000, "{wrong} wrong, {sides:?}");
+    }
+}
+
+/// How far a point is from a triangle, by its plane and its sides.
+fn triangle_distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let side = |a: DVec3, b: DVec3| {
+        let way = b - a;
+        let at = ((p - a).dot(way) / way.length_squared().max(1e-300)).clamp(0.0, 1.0);
+        p.distance(a + at * way)
+    };
+    let least = side(a, b).min(side(b, c)).min(side(c, a));
+    let normal = (b - a).cross(c - a);
+    let is_within = |a: DVec3, b: DVec3| normal.cross(b - a).dot(p - a) >= 0.0;
+    let is_above = normal != DVec3::ZERO && is_within(a, b) && is_within(b, c) && is_within(c, a);
+    if is_above { (p - a).dot(normal.normalize()).abs() } else { least }
+}
+
+/// In blocks of all sizes, about the surface and far from it, and of points at random.
+#[test]
+fn distances_of_blocks_are_the_least_of_all_triangles() {
+    let mut random = Random(11);
+    let turn = DAffine3::from_rotation_translation(DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 0.7, 0.2), DVec3::X);
+    let turned = |(positions, triangles): (Vec<Vec3>, Vec<[u32; 3]>)| {
+        (positions.iter().map(|p| turn.transform_point3(p.as_dvec3()).as_vec3()).collect::<Vec<Vec3>>(), triangles)
+    };
+    // Triangles of all shapes, some of them of no area.
+    let soup = |random: &mut Random| {
+        let corners = |random: &mut Random| {
+            let (a, size) = (random.point(1.0), [0.02, 0.3][usize::from(random.next() < 0.2)]);
+            let [b, c] = [a + random.point(size), a + random.point(size)];
+            let c = if random.next() < 0.1 { 0.5 * (a + b) } else { c };
+            [a, b, c].map(DVec3::as_vec3)
+        };
+        let positions: Vec<Vec3> = (0..900).flat_map(|_| corners(random)).collect();
+        (positions, (0..900).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect::<Vec<[u32; 3]>>())
+    };
+    for (positions, triangles) in [torus_triangles(24), turned(torus_triangles(20)), soup(&mut random)] {
+        let leaf = MeshLeaf::new(&positions, &triangles, None, None, &Run::default()).unwrap();
+        let corners: Vec<[DVec3; 3]> =
+            triangles.iter().map(|triangle| triangle.map(|v| positions[v as usize].as_dvec3())).collect();
+        for n in 0..48 {
+            let foot = leaf.nearest(random.point(2.0)).unwrap().point;
+            let step = [0.004, 0.03, 0.2, 2.0][n % 4] * (0.5 + random.next());
+            let start = foot - 4.0 * step + random.point(2.0 * step);
+            let at = |k: usize| start + step * DVec3::new((k % 8) as f64, (k / 8 % 8) as f64, (k / 64) as f64);
+            let strewn = n % 12 == 11;
+            let points: Vec<Vec3> =
+                (0..CHUNK).map(|k| if strewn { random.point(2.0) } else { at(k) }.as_vec3()).collect();
+            let columns = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<f32>>());
+            let mut out = vec![0.0_f32; CHUNK];
+            let placement = &Placement::IDENTITY;
+            leaf.lanes32(Chunk { points: columns.each_ref().map(|column| &column[..]), placement, out: [&mut out] });
+            for k in (n % 5..CHUNK).step_by(5) {
+                let p = points[k].as_dvec3();
+                let least = corners.iter().map(|t| triangle_distance(p, *t)).fold(f64::INFINITY, f64::min);
+                // Where the surface goes on across an opening, that is nearer.
+                let found = f64::from(out[k].abs());
+                let is_right = (found - least).abs() <= leaf.roundoff(20.0) || leaf.is_open() && found < least;
+                assert!(is_right, "{found} for {least} at {p}");
+                assert!(leaf.is_open() || (leaf.nearest(p).unwrap().distance - least).abs() < 1e-6);
+            }
+            if !leaf.is_open() {
+                // What a point has does not depend on those beside it.
+                let alone = columns.each_ref().map(|column| vec![column[n]; CHUNK]);
+                let mut single = vec![0.0_f32; CHUNK];
+                let points = alone.each_ref().map(|column| &column[..]);
+                leaf.lanes32(Chunk { points, placement, out: [&mut single] });
+                assert_eq!(single[0], out[n]);
+            }
+        }
     }
 }
 

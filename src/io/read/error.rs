@@ -3,6 +3,7 @@
 use std::fmt;
 use std::io;
 
+use crate::Cancelled;
 use crate::error::{MeshError, PointCloudError};
 
 /// Where in a file something is wrong.
@@ -59,6 +60,9 @@ pub enum ReadError {
         /// The setting that says so.
         setting: &'static str,
     },
+    /// The run was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The parts of the file do not make a mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),

@@ -3,8 +3,10 @@
 use std::io::Read;
 use std::path::Path;
 
+use super::limits::Limits;
 use super::shape::Shape;
 use super::{LoadError, LoadSettings, ReadError, glb, obj, ply, stl, threemf, xyz};
+use crate::Run;
 use crate::geom::{Mesh, PointCloud};
 
 /// A format that meshes or point clouds are read from.
@@ -51,13 +53,14 @@ impl FileFormat {
     }
 
     /// What a file holds, and by what its lengths are to be multiplied.
-    fn read(self, input: impl Read, settings: &LoadSettings) -> Result<(Shape, f64), ReadError> {
+    pub(super) fn read(self, input: impl Read, settings: &Limits<'_>) -> Result<(Shape, f64), ReadError> {
         let (mut shape, scale) = self.parsed(input, settings)?;
+        settings.run.check()?;
         shape.skip(settings)?;
         Ok((shape, scale))
     }
 
-    fn parsed(self, input: impl Read, settings: &LoadSettings) -> Result<(Shape, f64), ReadError> {
+    fn parsed(self, input: impl Read, settings: &Limits<'_>) -> Result<(Shape, f64), ReadError> {
         let bytes = settings.bytes(input)?;
         // Some programs put a mark before text in UTF-8.
         let data = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
@@ -99,7 +102,7 @@ impl Mesh {
     ///
     /// [`ReadError`], naming the line or the byte; that there are points but no triangles is one.
     pub fn read(format: FileFormat, input: impl Read, settings: &LoadSettings) -> Result<Mesh, ReadError> {
-        let (shape, scale) = format.read(input, settings)?;
+        let (shape, scale) = format.read(input, &Limits::new(settings, 0, &Run::default()))?;
         shape.into_mesh(scale)
     }
 }
@@ -124,7 +127,7 @@ impl PointCloud {
     ///
     /// [`ReadError`], naming the line or the byte.
     pub fn read(format: FileFormat, input: impl Read, settings: &LoadSettings) -> Result<PointCloud, ReadError> {
-        let (shape, scale) = format.read(input, settings)?;
+        let (shape, scale) = format.read(input, &Limits::new(settings, 0, &Run::default()))?;
         shape.into_cloud(scale)
     }
 }

@@ -13,12 +13,13 @@ use serde_json::Value;
 
 use self::accessor::Data;
 use self::scene::nodes;
+use super::ReadError;
 use super::bytes::Bytes;
 use super::error::{FilePlace, shown};
+use super::limits::Limits;
 use super::shape::{Shape, corners_of};
 use super::text::position;
 use super::weld::Weld;
-use super::{LoadSettings, ReadError};
 use crate::io::LengthUnit;
 
 const JSON: [u8; 4] = *b"JSON";
@@ -27,7 +28,7 @@ const BINARY: [u8; 4] = *b"BIN\0";
 /// Where the text begins.
 const TEXT: u64 = 20;
 
-pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<Shape, ReadError> {
+pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<Shape, ReadError> {
     let mut bytes = Bytes::new(data, 0);
     let magic: [u8; 4] = bytes.array("the letters glTF")?;
     if magic != *b"glTF" {
@@ -77,7 +78,7 @@ pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<Shape, ReadEr
             parts.push(part.moved(&upright(&map, settings.unit)));
         }
     }
-    welded(Shape::joined(parts, settings)?)
+    welded(Shape::joined(parts, settings)?, settings)
 }
 
 /// Extensions that change nothing of what is taken.
@@ -111,7 +112,7 @@ fn upright(map: &DAffine3, unit: LengthUnit) -> DAffine3 {
 }
 
 /// A primitive as it is; nothing of lines.
-fn part(file: &Data<'_>, primitive: &Value, settings: &LoadSettings) -> Result<Option<Shape>, ReadError> {
+fn part(file: &Data<'_>, primitive: &Value, settings: &Limits<'_>) -> Result<Option<Shape>, ReadError> {
     let attributes = &primitive["attributes"];
     let mode = primitive["mode"].as_u64().unwrap_or(4);
     if !matches!(mode, 0 | 4..=6) {
@@ -122,6 +123,7 @@ fn part(file: &Data<'_>, primitive: &Value, settings: &LoadSettings) -> Result<O
     for p in positions {
         // Single precision, of which NaN and infinity are told by the accessor's place alone.
         let place = || FilePlace::Part { part: "positions in the BIN chunk".into(), byte: 0 };
+        settings.step()?;
         shape.positions.push(position(p.map(f64::from), place)?);
     }
     let count = shape.positions.len();
@@ -163,13 +165,17 @@ fn part(file: &Data<'_>, primitive: &Value, settings: &LoadSettings) -> Result<O
 }
 
 /// Vertices at one position as one. What has no triangles stays as it is.
-fn welded(mut shape: Shape) -> Result<Shape, ReadError> {
+fn welded(mut shape: Shape, settings: &Limits<'_>) -> Result<Shape, ReadError> {
     if shape.triangles.is_empty() {
         return Ok(shape);
     }
     let mut weld = Weld::default();
     // As a mesh holds them.
-    let numbers: Vec<u32> = shape.positions.iter().map(|p| weld.vertex(p.as_vec3().as_dvec3())).collect();
+    let mut numbers = Vec::with_capacity(shape.positions.len());
+    for p in &shape.positions {
+        settings.step()?;
+        numbers.push(weld.vertex(p.as_vec3().as_dvec3()));
+    }
     shape.triangles.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
     shape.positions = weld.positions;
     (shape.normals, shape.colors) = (None, None);

@@ -3,9 +3,12 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
+use super::limits::Limits;
+use super::shape::Shape;
 use super::{FileFormat, LoadSettings, ReadError};
 use crate::geom::{Mesh, PointCloud};
 use crate::io::save::unknown;
+use crate::{Cancelled, Run};
 
 /// Why a file could not be loaded.
 #[derive(Debug, thiserror::Error)]
@@ -29,16 +32,33 @@ pub enum LoadError {
         /// The cause.
         source: ReadError,
     },
+    /// The run was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 fn load<T>(
     path: &Path,
     points: bool,
-    read: impl FnOnce(FileFormat, File) -> Result<T, ReadError>,
+    settings: &LoadSettings,
+    run: &Run,
+    made: impl FnOnce(Shape, f64) -> Result<T, ReadError>,
 ) -> Result<T, LoadError> {
     let format = FileFormat::of(path, points)?;
-    let file = File::open(path).map_err(ReadError::from);
-    file.and_then(|file| read(format, file)).map_err(|source| LoadError::Read { path: path.into(), source })
+    let run = run.stage(0.0, 1.0);
+    let [to_read, _] = run.stages([0.9, 0.1]);
+    let read = || {
+        let file = File::open(path)?;
+        let bytes = file.metadata().map_or(0, |about| about.len());
+        let (shape, scale) = format.read(file, &Limits::new(settings, bytes, &to_read))?;
+        made(shape, scale)
+    };
+    let loaded = read().map_err(|error| match error {
+        ReadError::Cancelled(cancelled) => LoadError::Cancelled(cancelled),
+        source => LoadError::Read { path: path.into(), source },
+    })?;
+    run.report(1.0);
+    Ok(loaded)
 }
 
 impl Mesh {
@@ -79,7 +99,33 @@ impl Mesh {
     ///
     /// [`LoadError`], naming the file and the cause, with the line or the byte.
     pub fn load_with(path: impl AsRef<Path>, settings: &LoadSettings) -> Result<Mesh, LoadError> {
-        load(path.as_ref(), false, |format, file| Mesh::read(format, file, settings))
+        Mesh::load_on(path, settings, &Run::default())
+    }
+
+    /// [`load_with`](Mesh::load_with) on a [`Run`], which is told roughly how much is read, and may
+    /// be cancelled.
+    ///
+    /// ```
+    /// use rvachev::error::LoadError;
+    /// use rvachev::{CancelToken, LoadSettings, Mesh, MeshSettings, Run, Solid};
+    ///
+    /// let path = std::env::temp_dir().join("rvachev_load_on.stl");
+    /// Solid::sphere(1.0).mesh(&MeshSettings::default())?.save(&path)?;
+    /// let run = Run { cancel: CancelToken::new(), ..Run::default() };
+    /// assert!(Mesh::load_on(&path, &LoadSettings::default(), &run).is_ok());
+    /// run.cancel.cancel();
+    /// let stopped = Mesh::load_on(&path, &LoadSettings::default(), &run);
+    /// assert!(matches!(stopped, Err(LoadError::Cancelled(_))));
+    /// # std::fs::remove_file(path)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`], naming the file and the cause, with the line or the byte, or that the work was
+    /// cancelled.
+    pub fn load_on(path: impl AsRef<Path>, settings: &LoadSettings, run: &Run) -> Result<Mesh, LoadError> {
+        load(path.as_ref(), false, settings, run, Shape::into_mesh)
     }
 }
 
@@ -101,6 +147,17 @@ impl PointCloud {
     ///
     /// [`LoadError`], naming the file and the cause, with the line or the byte.
     pub fn load_with(path: impl AsRef<Path>, settings: &LoadSettings) -> Result<PointCloud, LoadError> {
-        load(path.as_ref(), true, |format, file| PointCloud::read(format, file, settings))
+        PointCloud::load_on(path, settings, &Run::default())
+    }
+
+    /// [`load_with`](PointCloud::load_with) on a [`Run`], which is told roughly how much is read, and
+    /// may be cancelled.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`], naming the file and the cause, with the line or the byte, or that the work was
+    /// cancelled.
+    pub fn load_on(path: impl AsRef<Path>, settings: &LoadSettings, run: &Run) -> Result<PointCloud, LoadError> {
+        load(path.as_ref(), true, settings, run, Shape::into_cloud)
     }
 }

@@ -8,6 +8,7 @@ mod bytes;
 mod error;
 mod format;
 mod glb;
+mod limits;
 mod load;
 mod obj;
 mod ply;

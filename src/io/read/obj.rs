@@ -7,15 +7,16 @@
 
 use glam::{DVec3, Vec3};
 
+use super::ReadError;
 use super::error::{FilePlace, shown};
+use super::limits::Limits;
 use super::shape::Shape;
 use super::text::number;
-use super::{LoadSettings, ReadError};
 
 /// A form feed stands for the end of a line that goes on in the next.
 const JOINED: u8 = 0x0c;
 
-pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<Shape, ReadError> {
+pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<Shape, ReadError> {
     let mut object = Object::new(settings);
     let mut line = 1;
     for text in joined(data).split(|byte| *byte == b'\n') {
@@ -91,7 +92,7 @@ const SKIPPED: &[&[u8]] = &[
 ];
 
 struct Object<'a> {
-    settings: &'a LoadSettings,
+    settings: &'a Limits<'a>,
     shape: Shape,
     colors: Vec<[u8; 4]>,
     has_colors: bool,
@@ -107,7 +108,7 @@ struct Object<'a> {
 const NONE: u32 = u32::MAX;
 
 impl<'a> Object<'a> {
-    fn new(settings: &'a LoadSettings) -> Object<'a> {
+    fn new(settings: &'a Limits<'a>) -> Object<'a> {
         Object {
             settings,
             shape: Shape::default(),

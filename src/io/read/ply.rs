@@ -9,13 +9,14 @@ mod header;
 use glam::{DVec3, Vec3};
 
 use self::header::{Element, Encoding, Header, Kind, Number, Property};
+use super::ReadError;
 use super::bytes::Bytes;
 use super::error::FilePlace;
+use super::limits::Limits;
 use super::shape::Shape;
 use super::text::Words;
-use super::{LoadSettings, ReadError};
 
-pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<Shape, ReadError> {
+pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<Shape, ReadError> {
     let header = Header::read(data)?;
     let mut values = match header.encoding {
         Encoding::Text => Values::Text(Words::new(data, header.end, header.lines + 1)),
@@ -110,7 +111,7 @@ fn channel(name: &str) -> Option<usize> {
 fn read_vertices(
     element: &Element,
     values: &mut Values<'_>,
-    settings: &LoadSettings,
+    settings: &Limits<'_>,
     shape: &mut Shape,
 ) -> Result<(), ReadError> {
     const PLACES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
@@ -162,7 +163,7 @@ fn read_vertices(
 fn read_faces(
     element: &Element,
     values: &mut Values<'_>,
-    settings: &LoadSettings,
+    settings: &Limits<'_>,
     vertices: u64,
     shape: &mut Shape,
 ) -> Result<(), ReadError> {

@@ -1,8 +1,5 @@
 //! How files are read.
 
-use std::io::Read;
-
-use super::ReadError;
 use crate::io::LengthUnit;
 
 /// How a mesh or a point cloud is read.
@@ -57,33 +54,5 @@ impl LoadSettings {
             Some(unit) if unit != self.unit => unit.meters() / self.unit.meters(),
             _ => 1.0,
         }
-    }
-
-    /// All bytes, unless these are too many.
-    pub(super) fn bytes(&self, input: impl Read) -> Result<Vec<u8>, ReadError> {
-        let mut bytes = Vec::new();
-        // The memory grows with what arrives.
-        input.take(self.most_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
-        if bytes.len() as u64 > self.most_bytes {
-            return Err(ReadError::Limit { what: "bytes", limit: self.most_bytes, setting: "most_bytes" });
-        }
-        Ok(bytes)
-    }
-
-    /// Whether there may be so many triangles.
-    pub(super) fn triangles(&self, count: usize) -> Result<(), ReadError> {
-        if count as u64 <= self.most_triangles {
-            return Ok(());
-        }
-        Err(ReadError::Limit { what: "triangles", limit: self.most_triangles, setting: "most_triangles" })
-    }
-
-    /// Whether there may be so many vertices; never more than 32 bits count.
-    pub(super) fn points(&self, count: usize) -> Result<(), ReadError> {
-        let limit = self.most_points.min(u64::from(u32::MAX));
-        if count as u64 <= limit {
-            return Ok(());
-        }
-        Err(ReadError::Limit { what: "vertices", limit, setting: "most_points" })
     }
 }

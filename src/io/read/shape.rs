@@ -3,6 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::error::FilePlace;
+use super::limits::Limits;
 use super::text::{expected_coordinate, is_coordinate, is_position};
 use super::{LoadSettings, ReadError};
 use crate::geom::{Mesh, PointCloud};
@@ -152,7 +153,7 @@ impl Shape {
 
     /// Several parts as one. Normals and texture are kept if all parts with triangles have them,
     /// per corner; parts without colours beside others with some are white.
-    pub(super) fn joined(parts: Vec<Shape>, settings: &LoadSettings) -> Result<Shape, ReadError> {
+    pub(super) fn joined(parts: Vec<Shape>, settings: &Limits<'_>) -> Result<Shape, ReadError> {
         let solid = |has: fn(&Shape) -> bool| parts.iter().filter(|part| !part.triangles.is_empty()).all(has);
         let all_normals = solid(|part| part.corner_normals.is_some());
         let all_texture = solid(|part| part.corner_texture.is_some());
@@ -167,6 +168,7 @@ impl Shape {
             let (count, points) = (part.triangles.len(), part.positions.len());
             settings.points(all.positions.len() + points)?;
             settings.triangles(all.triangles.len() + count)?;
+            settings.run.check()?;
             all.positions.extend(part.positions);
             all.triangles.extend(part.triangles.into_iter().map(|corners| corners.map(|v| v + first)));
             normals.extend(part.corner_normals.filter(|_| all_normals).into_iter().flatten());

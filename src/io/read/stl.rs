@@ -6,18 +6,19 @@
 
 use glam::DVec3;
 
+use super::ReadError;
 use super::bytes::Bytes;
 use super::error::shown;
+use super::limits::Limits;
 use super::shape::Shape;
 use super::text::{Words, position};
 use super::weld::Weld;
-use super::{LoadSettings, ReadError};
 
 /// Bytes before the first facet, and those of a facet.
 const HEADER: usize = 84;
 const FACET: usize = 50;
 
-pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<Shape, ReadError> {
+pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<Shape, ReadError> {
     let mut facets = Facets { settings, weld: Weld::default(), triangles: Vec::new() };
     if is_text(data) {
         facets.read_text(data)?
@@ -37,7 +38,7 @@ fn is_text(data: &[u8]) -> bool {
 }
 
 struct Facets<'a> {
-    settings: &'a LoadSettings,
+    settings: &'a Limits<'a>,
     weld: Weld,
     triangles: Vec<[u32; 3]>,
 }

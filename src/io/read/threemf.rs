@@ -20,10 +20,12 @@ use quick_xml::reader::Reader;
 use zip::ZipArchive;
 
 use self::model::{Content, Model, Object, value};
+use super::ReadError;
 use super::error::{FilePlace, shown};
+use super::limits::Limits;
 use super::shape::Shape;
-use super::{LoadSettings, ReadError};
 use crate::io::LengthUnit;
+use crate::io::watched::Watched;
 
 /// The model, where no relation says so.
 const MODEL: &str = "3D/3dmodel.model";
@@ -31,7 +33,7 @@ const MODEL: &str = "3D/3dmodel.model";
 /// Components within components.
 const DEEPEST: usize = 64;
 
-pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<(Shape, LengthUnit), ReadError> {
+pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<(Shape, LengthUnit), ReadError> {
     let mut archive = ZipArchive::new(Cursor::new(data)).map_err(|error| {
         ReadError::content(FilePlace::Byte(0), "a ZIP archive", format!("{} ({error})", shown(data)))
     })?;
@@ -54,7 +56,7 @@ fn unpacked(
     archive: &mut ZipArchive<Cursor<&[u8]>>,
     name: &str,
     left: &mut u64,
-    settings: &LoadSettings,
+    settings: &Limits<'_>,
 ) -> Result<Option<String>, ReadError> {
     let Some(index) = archive.index_for_name(name) else { return Ok(None) };
     let damaged = |byte: u64, found: String| {
@@ -64,7 +66,8 @@ fn unpacked(
     let file = archive.by_index(index).map_err(|error| damaged(0, error.to_string()))?;
     let mut bytes = Vec::new();
     // What the archive says of the size is not believed.
-    let read = file.take(left.saturating_add(1)).read_to_end(&mut bytes);
+    let read = Watched::new(file, 0, settings.run).take(left.saturating_add(1)).read_to_end(&mut bytes);
+    settings.run.check()?;
     if let Err(error) = read {
         return Err(damaged(bytes.len() as u64, error.to_string()));
     }
@@ -106,7 +109,7 @@ const FREE: usize = 1000;
 /// The items, written out.
 struct Parts<'a> {
     model: &'a Model,
-    settings: &'a LoadSettings,
+    settings: &'a Limits<'a>,
     shapes: Vec<Shape>,
     triangles: usize,
     points: usize,

@@ -14,10 +14,11 @@
 
 use glam::{DVec3, Vec3};
 
+use super::ReadError;
 use super::error::{FilePlace, shown};
+use super::limits::Limits;
 use super::shape::Shape;
 use super::text::{lines, number};
-use super::{LoadSettings, ReadError};
 
 /// x, y, z, a normal, red, green, blue: the columns where they are.
 type Columns = [Option<usize>; 9];
@@ -25,7 +26,7 @@ type Columns = [Option<usize>; 9];
 /// So many columns are looked at.
 const MOST: usize = 64;
 
-pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<Shape, ReadError> {
+pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<Shape, ReadError> {
     let mut columns: Option<Columns> = None;
     let mut is_named = false;
     let mut rows: Vec<[f64; 9]> = Vec::new();

@@ -9,6 +9,7 @@
 //! A packet looks at every patch that is near to any of its points: a row of sixteen points of a
 //! grid looks at twice as many as a brick of 4 × 2 × 2.
 
+use super::face::wide;
 use crate::kernel::{CHUNK, Element};
 
 /// How many points are sorted at a time.
@@ -17,14 +18,11 @@ pub(super) const BLOCK: usize = CHUNK;
 /// How many cells there are along an axis.
 const CELLS: usize = 8;
 
-/// The bits of a cell's number, two bits apart.
-const SPREAD: [u16; CELLS] = [0, 1, 8, 9, 64, 65, 72, 73];
-
 /// Points of the surface's frame.
 pub(super) struct Block<E> {
     pub(super) columns: [[E; BLOCK]; 3],
-    /// Numbers that have their signs, where these matter.
-    pub(super) signs: [E; BLOCK],
+    /// A number of each point: of a search one that has its sign, where that matters.
+    pub(super) numbers: [E; BLOCK],
     /// Where the points stood before.
     order: [u16; BLOCK],
     /// The cells that they are in, and where the points of each begin.
@@ -38,7 +36,7 @@ impl<E: Element> Block<E> {
     pub(super) fn new() -> Block<E> {
         Block {
             columns: [[E::default(); BLOCK]; 3],
-            signs: [E::default(); BLOCK],
+            numbers: [E::default(); BLOCK],
             order: [0; BLOCK],
             cells: [0; BLOCK],
             starts: [0; CELLS * CELLS * CELLS],
@@ -46,20 +44,22 @@ impl<E: Element> Block<E> {
         }
     }
 
-    /// Sorts the points, of which `len` are in use, and the signs.
+    /// Sorts the points, of which `len` are in use, and their numbers; packets are longest along an
+    /// axis.
     #[inline(always)]
-    pub(super) fn sort(&mut self, len: usize) {
+    pub(super) fn sort(&mut self, len: usize, along: usize) {
         let [x, y, z] = &mut self.columns;
         let (x, y, z) = (&mut x[..len], &mut y[..len], &mut z[..len]);
         let ((low_x, width_x), (low_y, width_y), (low_z, width_z)) = (span(x), span(y), span(z));
         let width = width_x.max(width_y).max(width_z);
         let per_cell = if width > 0.0 { (CELLS as f32 * (1.0 - 1e-6)) / width } else { 0.0 };
+        let shifts = [(3 - along) % 3, (4 - along) % 3, (5 - along) % 3];
         let (cells, starts, before) = (&mut self.cells, &mut self.starts, &mut self.before);
         for i in 0..len {
             let x = cell(x[i], low_x, per_cell);
             let y = cell(y[i], low_y, per_cell);
             let z = cell(z[i], low_z, per_cell);
-            cells[i] = x | y << 1 | z << 2;
+            cells[i] = x << shifts[0] | y << shifts[1] | z << shifts[2];
         }
         starts.fill(0);
         for cell in &cells[..len] {
@@ -74,12 +74,20 @@ impl<E: Element> Block<E> {
             self.order[usize::from(*to) % BLOCK] = i;
             *to += 1;
         }
-        for column in [x, y, z, &mut self.signs[..len]] {
+        for column in [x, y, z, &mut self.numbers[..len]] {
             before[..len].copy_from_slice(column);
             for (to, from) in column.iter_mut().zip(&self.order) {
                 *to = before[usize::from(*from) % BLOCK];
             }
         }
+    }
+
+    /// The box about the first `len` points.
+    #[inline(always)]
+    pub(super) fn bounds(&self, len: usize) -> ([f64; 3], [f64; 3]) {
+        let [x, y, z] = &self.columns;
+        let ((x, width_x), (y, width_y), (z, width_z)) = (span(&x[..len]), span(&y[..len]), span(&z[..len]));
+        (wide([x, y, z]), wide([x + width_x, y + width_y, z + width_z]))
     }
 
     /// One of the points.
@@ -101,18 +109,27 @@ impl<E: Element> Block<E> {
 /// The least of some numbers, and how much larger the largest is.
 #[inline(always)]
 fn span<E: Element>(column: &[E]) -> (f32, f32) {
-    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-    for v in column {
-        let v = v.to_f64() as f32;
-        low = low.min(v);
-        high = high.max(v);
+    const AT_ONCE: usize = 16;
+    let (mut low, mut high) = ([f32::INFINITY; AT_ONCE], [f32::NEG_INFINITY; AT_ONCE]);
+    // Each place of a vector by itself, as these are numbers.
+    for some in column.chunks(AT_ONCE) {
+        for ((v, low), high) in some.iter().zip(&mut low).zip(&mut high) {
+            let v = v.to_f64() as f32;
+            *low = if v < *low { v } else { *low };
+            *high = if v > *high { v } else { *high };
+        }
     }
-    (low, high - low)
+    let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
+    for (low, high) in low.iter().zip(&high) {
+        least = if *low < least { *low } else { least };
+        most = if *high > most { *high } else { most };
+    }
+    (least, most - least)
 }
 
-/// The bits of the cell that a coordinate is in.
+/// The bits of the cell that a coordinate is in, two bits apart.
 #[inline(always)]
 fn cell<E: Element>(v: E, low: f32, per_cell: f32) -> u16 {
-    let cell = ((v.to_f64() as f32 - low) * per_cell) as usize;
-    SPREAD[cell.min(CELLS - 1)]
+    let cell = (((v.to_f64() as f32 - low) * per_cell) as u16).min(CELLS as u16 - 1);
+    cell & 1 | (cell & 2) << 2 | (cell & 4) << 4
 }

@@ -11,17 +11,45 @@ use super::closest::dot;
 use super::packet::{Packet, WIDEST};
 use super::packets::{Packets, Seeds};
 use super::pairs::{Found, Pairs};
-use super::search::Stack;
+use super::search::{Entries, Stack};
 use crate::kernel::{Element, on_level};
 use crate::{Chunk, Placement};
+
+/// What is left of a distance, in units of the frame, that points are certain to be apart.
+const CLEARLY: f32 = 1.0 - 1e-4;
+const CLEAR: f32 = 1e-5;
 
 impl SurfaceDistance {
     /// Values on lanes of `f32`.
     pub(super) fn values32(&self, chunk: Chunk<'_, f32, 1>, band: f64) {
         let Chunk { points, placement, out: [out] } = chunk;
-        self.signs32(points, placement, out);
         let packets = self.packets(placement, band);
-        on_level!(simd => values_on::<F32<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
+        // How far points are tells how far their signs hold, but where these tell what is searched
+        // for.
+        let are_last = band == f64::INFINITY && self.side.is_none();
+        if !are_last {
+            self.signs32(points, placement, out);
+        }
+        let tell = |here: ops::Range<usize>, squares: &[f32], signs: &mut [f32]| {
+            if are_last {
+                self.sides32(points.map(|column| &column[here.clone()]), placement, squares, signs);
+            }
+        };
+        on_level!(
+            simd => values_on::<F32<_>>(simd, &packets, points, out, tell),
+            else values_by_point(&packets, points, out, tell)
+        );
+    }
+
+    /// Numbers with the signs of points, given the squares of their distances in units of the frame.
+    fn sides32(&self, points: [&[f32]; 3], placement: &Placement, squares: &[f32], out: &mut [f32]) {
+        let (unit, error) = (self.patches.unit() as f32, self.error() as f32);
+        let mut apart = [0.0; BLOCK];
+        for (to, square) in apart.iter_mut().zip(squares) {
+            *to = unit * (square.sqrt() * CLEARLY - CLEAR) - error;
+        }
+        let placement = &unscaled(placement);
+        self.sign.sides32(Chunk { points, placement, out: [out] }, &apart[..squares.len()]);
     }
 
     /// The same on lanes of `f64`.
@@ -32,7 +60,10 @@ impl SurfaceDistance {
             None => self.sign.lanes64(Chunk { points, placement: &unscaled(placement), out: [&mut *out] }),
         }
         let packets = self.packets(placement, f64::INFINITY);
-        on_level!(simd => values_on::<F64<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
+        on_level!(
+            simd => values_on::<F64<_>>(simd, &packets, points, out, |_, _, _| {}),
+            else values_by_point(&packets, points, out, |_, _, _| {})
+        );
     }
 
     /// Values and gradients.
@@ -97,7 +128,8 @@ fn load<L: Lanes>(simd: L::Token, [x, y, z]: [&[L::Element]; 3], here: ops::Rang
     [L::load(simd, &x[here.clone()]), L::load(simd, &y[here.clone()]), L::load(simd, &z[here])]
 }
 
-/// Fills a block with points of the surface's frame, sorted.
+/// Fills a block with points of the surface's frame, sorted, and says which patch its middle is
+/// near, and where searches are to begin.
 #[inline(always)]
 fn fill<L: Lanes<Element: Element>>(
     simd: L::Token,
@@ -106,8 +138,8 @@ fn fill<L: Lanes<Element: Element>>(
     signs: &[L::Element],
     here: ops::Range<usize>,
     block: &mut Block<L::Element>,
-) {
-    block.signs[..here.len()].copy_from_slice(&signs[here.clone()]);
+) -> (u32, Entries) {
+    block.numbers[..here.len()].copy_from_slice(&signs[here.clone()]);
     let mut at = 0;
     while at < here.len() {
         let from = here.start + at;
@@ -117,7 +149,10 @@ fn fill<L: Lanes<Element: Element>>(
         z.store(&mut block.columns[2][at..at + L::WIDTH]);
         at += L::WIDTH;
     }
-    block.sort(here.len());
+    let (low, high) = block.bounds(here.len());
+    let near = packets.patches.near([0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])));
+    block.sort(here.len(), packets.patches.steepest(near.which as u32));
+    (near.which as u32, packets.patches.entries(low, high, near.square.sqrt()))
 }
 
 /// What a loop over blocks needs besides points and results.
@@ -156,15 +191,16 @@ impl<L: Lanes<Element: Element> + Packet> Work<L> {
         let patches = packets.patches;
         let is_flat = patches.quadratics.is_empty();
         let len = here.len();
-        fill::<L>(simd, packets, points, signs, here, &mut self.block);
+        let (near, entries) = fill::<L>(simd, packets, points, signs, here, &mut self.block);
+        self.seeds.start(near);
         let mut at = 0;
         while at < len {
             let here = at..at + L::WIDTH;
             let [x, y, z] = &self.block.columns;
             let p = load::<L>(simd, [x, y, z], here.clone());
             self.pairs.first = at as u32;
-            let range = packets.range(L::load(simd, &self.block.signs[here.clone()]));
-            let best = patches.search(p, self.seeds.known(), range, &mut self.stack, &mut self.pairs);
+            let range = packets.range(L::load(simd, &self.block.numbers[here.clone()]));
+            let best = patches.search(p, entries.all(), self.seeds.known(), range, &mut self.stack, &mut self.pairs);
             self.seeds.take(best.which);
             let (all, _) = best.which.all();
             for (to, which) in self.found.patches[here.clone()].iter_mut().zip(all) {
@@ -192,13 +228,15 @@ impl<L: Lanes<Element: Element> + Packet> Work<L> {
     }
 }
 
-/// Values, block by block; `out` holds the signs before.
+/// Values, block by block; `out` holds the signs before, or `tell` puts them there: of points in a
+/// place, given the squares of their distances.
 #[inline(always)]
 fn values_on<L: Lanes<Element: Element> + Packet>(
     simd: L::Token,
     packets: &Packets<'_>,
     points: [&[L::Element]; 3],
     out: &mut [L::Element],
+    tell: impl Fn(ops::Range<usize>, &[L::Element], &mut [L::Element]),
 ) {
     let mut work = Work::<L>::new(simd);
     let mut squares = [L::Element::default(); BLOCK];
@@ -209,6 +247,7 @@ fn values_on<L: Lanes<Element: Element> + Packet>(
         work.find(simd, packets, points, out, from..from + own, false);
         work.block.unsorted(&work.found.squares, &mut squares[..own]);
         repeat(&mut squares[..len], own);
+        tell(from..from + len, &squares[..len], &mut out[from..from + len]);
         take_sides(packets, points, &squares, &mut out[from..from + len], from);
         let mut at = 0;
         while at < len {
@@ -224,11 +263,27 @@ fn values_on<L: Lanes<Element: Element> + Packet>(
 /// The same of machines without lanes.
 #[cold]
 #[inline(never)]
-fn values_by_point<E: Element>(packets: &Packets<'_>, [x, y, z]: [&[E]; 3], out: &mut [E]) {
-    for at in 0..out.len() {
-        let best = packets.patches.search_one(packets.local([x[at], y[at], z[at]].map(E::to_f64)));
-        take_sides(packets, [x, y, z], &[E::from_f64(best.square)], &mut out[at..=at], at);
-        out[at] = E::from_f64(packets.value(best.square, out[at].to_f64()));
+fn values_by_point<E: Element>(
+    packets: &Packets<'_>,
+    [x, y, z]: [&[E]; 3],
+    out: &mut [E],
+    tell: impl Fn(ops::Range<usize>, &[E], &mut [E]),
+) {
+    let mut squares = [E::default(); BLOCK];
+    let mut from = 0;
+    while from < out.len() {
+        let here = from..out.len().min(from + BLOCK);
+        let squares = &mut squares[..here.len()];
+        for (at, square) in here.clone().zip(&mut *squares) {
+            let local = packets.local([x[at], y[at], z[at]].map(E::to_f64));
+            *square = E::from_f64(packets.patches.search_one(local).square);
+        }
+        tell(here.clone(), squares, &mut out[here.clone()]);
+        take_sides(packets, [x, y, z], squares, &mut out[here.clone()], from);
+        for (out, square) in out[here].iter_mut().zip(squares) {
+            *out = E::from_f64(packets.value(square.to_f64(), out.to_f64()));
+        }
+        from += BLOCK;
     }
 }
 

@@ -14,7 +14,7 @@ use crate::Bounds;
 
 /// How much boxes are grown, in units of the frame, so that no rounding leaves a part of a patch
 /// outside: some twenty times what single precision does to a coordinate.
-const SLACK: f64 = 16.0 * f32::EPSILON as f64;
+pub(super) const SLACK: f64 = 16.0 * f32::EPSILON as f64;
 
 /// The frame of the stored numbers.
 #[derive(Clone, Copy, Debug)]

@@ -7,14 +7,16 @@
 //! A quadratic patch follows a smooth surface to the fourth power of its size, where a flat
 //! triangle follows it to the second: a sphere takes a few hundred patches where it would take
 //! a hundred thousand triangles. A hierarchy of boxes (a BVH split by the surface area
-//! heuristic) finds the few patches that may be nearest; the nearest point of a patch is found
+//! heuristic), the small ones of them beside discs along the surface, finds the few patches that may
+//! be nearest; the nearest point of a patch is found
 //! by Newton's method from the foot on its flat triangle.
 //!
 //! What is found of a patch is a function of the point and the patch alone, and the distance is
 //! the least of all, so neither the order of the search nor where it starts shows in the result.
 //!
-//! Chunks of points are sorted into compact packets, and all points of a packet go through the
-//! hierarchy at once, on SIMD lanes. What is left to do of curved patches is done in vectors of
+//! Chunks of points are sorted into compact packets, longest across the surface, and all points of a
+//! packet go through the hierarchy at once, on SIMD lanes, from the boxes on that may hold what is
+//! nearest to any point of the chunk. What is left to do of curved patches is done in vectors of
 //! pairs of a point and a patch.
 //!
 //! The geometry is kept in single precision, as lengths of a frame about the surface's middle
@@ -29,6 +31,7 @@ mod block;
 mod chunks;
 mod closest;
 mod curved;
+mod disc;
 mod double;
 mod face;
 mod hierarchy;
@@ -55,9 +58,10 @@ use rvachev_num::{Cancelled, Run};
 
 use self::closest::Closest;
 use self::curved::Around;
+use self::disc::Disc;
 use self::face::{Face, Frame, Quadratic, Sides, wide};
 use self::hierarchy::{Node, Tree};
-use self::search::{Best, Keep, Range, Stack};
+use self::search::{Best, Entries, Keep, Range, Stack};
 use crate::Bounds;
 
 pub use self::inscribed::Walls;
@@ -84,6 +88,8 @@ pub struct Patches {
     frame: Frame,
     bounds: Bounds,
     nodes: Vec<Node>,
+    /// What is closer to the patches of boxes than these are, box by box.
+    discs: Vec<Disc>,
     /// The flat triangles, in the order of the hierarchy.
     faces: Vec<Face>,
     sides: Vec<Sides>,
@@ -128,12 +134,13 @@ impl Patches {
         let sorted = || numbers.iter().map(|i| &patches[*i as usize]);
         let faces = gathered(sorted().map(|patch| Face::new(patch, &frame)), run)?;
         let sides = gathered(sorted().map(|patch| Sides::new(patch, &frame)), run)?;
+        let discs = disc::discs(&nodes, &faces, &sides, run)?;
         let is_flat = chosen().all(Patch::is_flat);
         let quadratics =
             if is_flat { Vec::new() } else { gathered(sorted().map(|patch| Quadratic::new(patch, &frame)), run)? };
         run.check()?;
         let hash = face::hash(&frame, &faces, &sides, &quadratics);
-        Ok(Patches { frame, bounds, nodes, faces, sides, quadratics, numbers, hash })
+        Ok(Patches { frame, bounds, nodes, discs, faces, sides, quadratics, numbers, hash })
     }
 
     /// The nearest point; nothing if there are no patches.
@@ -170,8 +177,26 @@ impl Patches {
     /// The nearest patch to one point of the surface's frame.
     fn search_one(&self, local: [f64; 3]) -> Best<f64> {
         let mut curved = One { patches: self, local, best: Best::none(0.0) };
-        let best = self.search(local, &[], Range::all(0.0), &mut Stack::new(0.0), &mut curved);
+        let best = self.search(local, self.all(), &[], Range::all(0.0), &mut Stack::new(0.0), &mut curved);
         if self.quadratics.is_empty() { best } else { curved.best }
+    }
+
+    /// The boxes that a search begins with which knows nothing.
+    fn all(&self) -> &'static [u32] {
+        if self.nodes.is_empty() { &[] } else { Entries::ALL }
+    }
+
+    /// A patch that is about as near to a point of the surface's frame as any, and the square of how
+    /// far it is at most.
+    #[inline(never)]
+    fn near(&self, local: [f64; 3]) -> Best<f64> {
+        self.search(local, self.all(), &[], Range::all(0.0), &mut Stack::new(0.0), &mut Any)
+    }
+
+    /// The axis that is steepest upon a patch.
+    fn steepest(&self, patch: u32) -> usize {
+        let [x, y, z] = self.faces.get(patch as usize).map_or([0.0; 3], |face| face.n.map(f32::abs));
+        if x >= y && x >= z { 0 } else { 1 + usize::from(z > y) }
     }
 
     /// The nearest point of one patch.
@@ -220,6 +245,7 @@ impl Patches {
     /// The memory that they take.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.nodes)
+            + size_of_val(&*self.discs)
             + size_of_val(&*self.faces)
             + size_of_val(&*self.sides)
             + size_of_val(&*self.quadratics)
@@ -247,6 +273,13 @@ impl Keep<f64> for One<'_> {
             self.best.take(self.patches.closest(at as usize, self.local).square, at);
         }
     }
+}
+
+/// Takes no curved patch: its triangle tells enough.
+struct Any;
+
+impl Keep<f64> for Any {
+    fn keep(&mut self, _: u32, _: f64, _: f64) {}
 }
 
 impl fmt::Debug for Patches {

@@ -41,6 +41,12 @@ pub(super) trait Packet: Real {
 
     /// The squares of the distances from a face.
     fn from_face(p: [Self; 3], face: &Face, sides: &Sides) -> Self;
+
+    /// The same; nothing where it is easily told that none is below `most`.
+    #[inline(always)]
+    fn from_near_face(p: [Self; 3], face: &Face, sides: &Sides, most: Self) -> Option<Self> {
+        if Plane::single(face).gap(p).any_below(most) { Some(Self::from_face(p, face, sides)) } else { None }
+    }
 }
 
 impl Packet for f64 {
@@ -105,6 +111,11 @@ impl<S: Simd> Packet for F32<S> {
     #[inline(always)]
     fn from_face(p: [Self; 3], face: &Face, _: &Sides) -> Self {
         Plane::single(face).square(p)
+    }
+
+    #[inline(always)]
+    fn from_near_face(p: [Self; 3], face: &Face, _: &Sides, most: Self) -> Option<Self> {
+        Plane::single(face).square_below(p, most)
     }
 }
 

@@ -40,6 +40,11 @@ impl Seeds {
     }
 
     #[inline(always)]
+    pub(super) fn start(&mut self, patch: u32) {
+        (self.patches[0], self.count) = (patch, 1);
+    }
+
+    #[inline(always)]
     pub(super) fn take<R: Packet>(&mut self, which: R) {
         let (all, count) = which.all();
         self.count = 0;

@@ -6,7 +6,9 @@
 use rvachev_num::Real;
 
 use super::closest::within;
-use super::face::{Face, wide};
+use super::face::{Face, SLACK, wide};
+use super::packet::Packet;
+use super::search::SURE;
 
 /// A triangle in its own plane: see [`Face`].
 pub(super) struct Plane {
@@ -16,9 +18,9 @@ pub(super) struct Plane {
     apex: [f64; 2],
     /// From corner 1 to 2.
     last: [f64; 2],
-    /// One over the squares of the lengths of the sides from corner 1 to 2 and from 0 to 2; 0 for
-    /// a side without length.
-    per_side: [f64; 2],
+    /// The box about it in its plane, wider by what rounding does to a coordinate.
+    low: [f64; 2],
+    high: [f64; 2],
 }
 
 impl Plane {
@@ -32,7 +34,8 @@ impl Plane {
             length: f64::from(length),
             apex: [f64::from(x), f64::from(y)],
             last: [f64::from(x - length), f64::from(y)],
-            per_side: [f64::from(per_square(x - length, y)), f64::from(per_square(x, y))],
+            low: [f64::from(x.min(0.0) - SLACK as f32), f64::from(-SLACK as f32)],
+            high: [f64::from(x.max(length) + SLACK as f32), f64::from(y + SLACK as f32)],
         }
     }
 
@@ -51,19 +54,43 @@ impl Plane {
         let ([wx, wy], [fx, fy]) = (self.last, self.apex);
         let beyond = x - self.length;
         let first = [beyond.max(x.min(x.lift(0.0))), y];
-        let q = -within(beyond.scale_add(wx, y * wy) * self.per_side[0]);
+        let q = -within(beyond.scale_add(wx, y * wy) * per_square(wx, wy));
         let second = [q.scale_add(wx, beyond), q.scale_add(wy, y)];
-        let q = -within(x.scale_add(fx, y * fy) * self.per_side[1]);
+        let q = -within(x.scale_add(fx, y * fy) * per_square(fx, fy));
         let third = [q.scale_add(fx, x), q.scale_add(fy, y)];
         // On a side it is 0 and so is the way; a triangle without area has no inside.
         let inside = y.min(y.scale_add(wx, beyond * -wy)).min(x.scale_add(fy, y * -fx));
         ([first, second, third], inside)
     }
 
+    /// The squares of how far points are from the box about the triangle in its plane, at least.
+    #[inline(always)]
+    pub(super) fn gap<R: Real>(&self, p: [R; 3]) -> R {
+        self.gap_of(self.local(p))
+    }
+
+    #[inline(always)]
+    fn gap_of<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+        let x = beyond(x, self.low[0], self.high[0]);
+        let y = beyond(y, self.low[1], self.high[1]);
+        x.mul_add(x, y.mul_add(y, z * z)) * SURE
+    }
+
+    /// The squares of the distances; nothing if none is below `most`.
+    #[inline(always)]
+    pub(super) fn square_below<R: Packet>(&self, p: [R; 3], most: R) -> Option<R> {
+        let local = self.local(p);
+        if self.gap_of(local).any_below(most) { Some(self.square_of(local)) } else { None }
+    }
+
     /// The squares of the distances.
     #[inline(always)]
     pub(super) fn square<R: Real>(&self, p: [R; 3]) -> R {
-        let [x, y, z] = self.local(p);
+        self.square_of(self.local(p))
+    }
+
+    #[inline(always)]
+    fn square_of<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
         let ([first, second, third], inside) = self.aside(x, y);
         let aside = norm(first).min(norm(second)).min(norm(third));
         z.mul_add(z, (-inside).select(aside, z.lift(0.0)))
@@ -101,7 +128,14 @@ fn stored_dot<R: Real>(v: [R; 3], w: [f64; 3]) -> R {
 
 /// One over the square of a side's length, 0 of none.
 #[inline(always)]
-fn per_square(x: f32, y: f32) -> f32 {
+fn per_square(x: f64, y: f64) -> f64 {
+    let (x, y) = (x as f32, y as f32);
     let square = x * x + y * y;
-    if square > 1e-30 { 1.0 / square } else { 0.0 }
+    if square > 1e-30 { f64::from(1.0 / square) } else { 0.0 }
+}
+
+/// How far numbers are from a range.
+#[inline(always)]
+fn beyond<R: Real>(x: R, low: f64, high: f64) -> R {
+    x - x.max(x.lift(low)).min(x.lift(high))
 }

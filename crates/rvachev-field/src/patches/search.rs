@@ -8,13 +8,13 @@
 use rvachev_num::Real;
 
 use super::Patches;
-use super::face::{Face, Sides};
+use super::face::{Face, SLACK, Sides};
 use super::hierarchy::{DEEPEST, LEAF, Node, PARENT};
 use super::packet::Packet;
 
 /// What is left of a lower bound after rounding: that of a box is off by a few units in the last
 /// place, that of a patch by as much.
-const SURE: f64 = 1.0 - 16.0 * f32::EPSILON as f64;
+pub(super) const SURE: f64 = 1.0 - 16.0 * f32::EPSILON as f64;
 
 /// The same of an upper bound.
 const SURELY: f64 = 2.0 - SURE;
@@ -54,12 +54,19 @@ impl<R: Packet> Best<R> {
 }
 
 /// Boxes that are still to be looked into, and how far they are at least.
-pub(super) struct Stack<R>([(u32, R); DEEPEST]);
+pub(super) struct Stack<R> {
+    boxes: [(u32, R); 2 * DEEPEST + ENTRIES],
+    kept: [(u32, R); KEPT],
+}
+
+/// A search of a block begins with so many boxes at most.
+pub(super) const ENTRIES: usize = 12;
 
 impl<R: Real> Stack<R> {
     #[inline(always)]
     pub(super) fn new(like: R) -> Stack<R> {
-        Stack([(0, like.lift(0.0)); DEEPEST])
+        let none = (0, like.lift(0.0));
+        Stack { boxes: [none; 2 * DEEPEST + ENTRIES], kept: [none; KEPT] }
     }
 }
 
@@ -67,6 +74,21 @@ impl<R: Real> Stack<R> {
 pub(super) trait Keep<R> {
     /// Takes a patch, the square of how far it is at least, and that of what is known.
     fn keep(&mut self, at: u32, least: R, most: R);
+}
+
+/// Boxes that a search begins with.
+pub(super) struct Entries {
+    nodes: [u32; ENTRIES],
+    count: usize,
+}
+
+impl Entries {
+    /// All patches, of which there are some.
+    pub(super) const ALL: &[u32] = &[0];
+
+    pub(super) fn all(&self) -> &[u32] {
+        &self.nodes[..self.count]
+    }
 }
 
 /// Which distances a search is to find: squares of those that are near enough to be told apart, and
@@ -90,21 +112,20 @@ const KEPT: usize = 32;
 
 impl Patches {
     /// Finds the nearest patches to points of the surface's frame, of curved patches all that may
-    /// be. `seeds` are patches that are likely to be near. What is found below the range is a bound
+    /// be. It begins with boxes that hold all that may be nearest, the last one first; `seeds` are
+    /// patches that are likely to be near. What is found below the range is a bound
     /// of the distance, and what is beyond is held at its end.
     #[inline(always)]
     pub(super) fn search<R: Packet>(
         &self,
         p: [R; 3],
+        entries: &[u32],
         seeds: &[u32],
         range: Range<R>,
         stack: &mut Stack<R>,
         curved: &mut impl Keep<R>,
     ) -> Best<R> {
         let mut best = Best::none(p[0]).within(range.high);
-        if self.nodes.is_empty() {
-            return best;
-        }
         let is_flat = self.quadratics.is_empty();
         // No point is farther than this.
         let mut most = best.square;
@@ -120,59 +141,129 @@ impl Patches {
         let open = |most: R| (range.low - most).select(most.lift(0.0), most);
         most = open(most);
         let middle = [p[0].one(), p[1].one(), p[2].one()];
-        let mut kept = [(0, most); KEPT];
-        stack.0[0] = (0, p[0].lift(0.0));
-        let mut height = 1;
+        let mut height = 0;
+        for entry in entries {
+            self.push(*entry, p, most, stack, &mut height);
+        }
         while height > 0 {
             let mut count = 0;
             while height > 0 && count + LEAF <= KEPT {
                 height -= 1;
-                let (at, least) = stack.0[height];
+                let (at, least) = stack.boxes[height];
                 if !least.any_below(most) {
                     continue;
                 }
                 let node = &self.nodes[at as usize];
                 if node.count >= PARENT {
-                    let [a, b] = [&self.nodes[node.first as usize], &self.nodes[node.first as usize + 1]];
-                    let axis = (node.count - PARENT) as usize % 3;
-                    let mut b_first = 2.0 * middle[axis] > a.high[axis] + b.low[axis];
-                    if R::ALONE {
-                        let (gap_a, gap_b) = (gap(a, p).one(), gap(b, p).one());
-                        b_first = (gap_b < gap_a) | ((gap_b == gap_a) & b_first);
+                    for child in self.far_and_near(node, p, middle) {
+                        let inner = &self.nodes[child as usize];
+                        // To go down by two makes fewer steps that each wait for the last one.
+                        if !R::ALONE && inner.count >= PARENT {
+                            for child in self.far_and_near(inner, p, middle) {
+                                self.push(child, p, most, stack, &mut height);
+                            }
+                        } else {
+                            self.push(child, p, most, stack, &mut height);
+                        }
                     }
-                    // Without branches: which way they go is all but chance.
-                    let b_first = u32::from(b_first);
-                    let [near, far] = [node.first + b_first, node.first + 1 - b_first];
-                    let least = gap(&self.nodes[far as usize], p);
-                    stack.0[height] = (far, least);
-                    height += usize::from(least.any_below(most));
-                    let least = gap(&self.nodes[near as usize], p);
-                    stack.0[height] = (near, least);
-                    height += usize::from(least.any_below(most));
                     continue;
                 }
                 for at in node.first..node.first + node.count {
                     let Some((face, sides)) = self.at(at as usize) else { continue };
-                    let square = R::from_face(p, face, sides);
                     if is_flat {
-                        best.take(square, at);
-                        most = open(most.min(best.square));
+                        if let Some(square) = R::from_near_face(p, face, sides, most) {
+                            best.take(square, at);
+                            most = open(most.min(best.square));
+                        }
                         continue;
                     }
+                    let square = R::from_face(p, face, sides);
                     let distance = square.sqrt();
                     let least = (distance * SURE - f64::from(face.sag)).max(square.lift(0.0));
                     let least = least.square() * SURE;
-                    kept[count] = (at, least);
+                    stack.kept[count] = (at, least);
                     count += usize::from(least.any_below(most));
                     best.take((distance + f64::from(face.sag)).square() * SURELY + f64::from(f32::MIN_POSITIVE), at);
                     most = open(most.min(best.square));
                 }
             }
-            for (at, least) in &kept[..count] {
+            for (at, least) in &stack.kept[..count] {
                 curved.keep(*at, *least, most);
             }
         }
         best.within(known)
+    }
+
+    /// The children of a box, the nearer one last.
+    #[inline(always)]
+    fn far_and_near<R: Packet>(&self, node: &Node, p: [R; 3], middle: [f32; 3]) -> [u32; 2] {
+        let [a, b] = [&self.nodes[node.first as usize], &self.nodes[node.first as usize + 1]];
+        let axis = (node.count - PARENT) as usize % 3;
+        let mut b_first = 2.0 * middle[axis] > a.high[axis] + b.low[axis];
+        if R::ALONE {
+            let (gap_a, gap_b) = (self.gap(node.first, p).one(), self.gap(node.first + 1, p).one());
+            b_first = (gap_b < gap_a) | ((gap_b == gap_a) & b_first);
+        }
+        let b_first = u32::from(b_first);
+        [node.first + 1 - b_first, node.first + b_first]
+    }
+
+    /// Puts a box on the stack, if it may hold what is nearer than what is known.
+    #[inline(always)]
+    fn push<R: Packet>(&self, at: u32, p: [R; 3], most: R, stack: &mut Stack<R>, height: &mut usize) {
+        let least = self.gap(at, p);
+        // Without branches: which way they go is all but chance.
+        stack.boxes[*height] = (at, least);
+        *height += usize::from(least.any_below(most));
+    }
+
+    /// The square of how far points are from the patches of a box, at least.
+    #[inline(always)]
+    fn gap<R: Real>(&self, at: u32, p: [R; 3]) -> R {
+        let disc = &self.discs[at as usize];
+        if disc.is_none() { gap(&self.nodes[at as usize], p) } else { disc.gap(p) }
+    }
+
+    /// Boxes that hold all that may be nearest to points of a box, whose middle is that far from some
+    /// patch at most: the nearest to the middle comes last.
+    pub(super) fn entries(&self, low: [f64; 3], high: [f64; 3], far: f64) -> Entries {
+        let mut entries = Entries { nodes: [0; ENTRIES], count: usize::from(!self.nodes.is_empty()) };
+        let half = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
+        let within = (far + half.iter().map(|x| x * x).sum::<f64>().sqrt()) * (1.0 + 1e-6) + SLACK;
+        let gaps = |node: &Node, axis: usize| {
+            let (a, b) = (f64::from(node.low[axis]) - high[axis], low[axis] - f64::from(node.high[axis]));
+            a.max(b).max(0.0)
+        };
+        // Numbers that are none leave nothing out.
+        let is_far = |at: u32| {
+            let node = &self.nodes[at as usize];
+            (0..3).map(|axis| gaps(node, axis).powi(2)).sum::<f64>() > within * within
+        };
+        loop {
+            let all = &entries.nodes[..entries.count];
+            // The largest have the least numbers.
+            let is_parent = |at: &u32| self.nodes[*at as usize].count >= PARENT && self.discs[*at as usize].is_none();
+            let Some(place) = (0..all.len()).filter(|i| is_parent(&all[*i])).min_by_key(|i| all[*i]) else { break };
+            let first = self.nodes[all[place] as usize].first;
+            let (a, b) = (is_far(first), is_far(first + 1));
+            if !a && !b && entries.count == ENTRIES {
+                break;
+            }
+            if a && b {
+                entries.count -= 1;
+                entries.nodes[place] = entries.nodes[entries.count];
+            } else {
+                entries.nodes[place] = first + u32::from(a);
+                if !a && !b {
+                    entries.nodes[entries.count] = first + 1;
+                    entries.count += 1;
+                }
+            }
+        }
+        let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
+        let gap = |at: u32| self.gap(at, middle);
+        entries.nodes[..entries.count].sort_unstable_by(|a, b| gap(*b).total_cmp(&gap(*a)));
+        entries
     }
 
     /// A patch's triangle.

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3, EulerRot};
 use rvachev_num::{CancelToken, Run};
 
+use super::hierarchy::PARENT;
 use super::{Foot, Patch, Patches};
 
 /// A generator of numbers in [0, 1).
@@ -190,6 +191,69 @@ fn the_normal_is_that_of_the_patch() {
             assert!(normal.dot(p - point).abs() > 0.99 * distance, "{p} {point} {normal}");
         }
     }
+}
+
+/// The patches of a box, counted as the hierarchy sorts them.
+fn of_box(patches: &Patches, at: usize) -> Vec<usize> {
+    let node = &patches.nodes[at];
+    if node.count < PARENT {
+        return (node.first as usize..(node.first + node.count) as usize).collect();
+    }
+    [0, 1].into_iter().flat_map(|child| of_box(patches, node.first as usize + child)).collect()
+}
+
+#[test]
+fn no_patch_is_nearer_than_its_disc() {
+    let (mut random, mut told) = (Random(8), 0);
+    let turn = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.9, 0.5);
+    let turned = |patches: Vec<Patch>| {
+        let turned = |v: DVec3| turn * v;
+        let patch =
+            |patch: Patch| Patch { corners: patch.corners.map(turned), displacements: patch.displacements.map(turned) };
+        patches.into_iter().map(patch).collect::<Vec<Patch>>()
+    };
+    for patches in [
+        sphere(12, true),
+        sphere(12, false),
+        turned(cuboid(DVec3::new(1.0, 2.0, 0.1))),
+        random_patches(&mut random, 200),
+    ] {
+        let found = built(&patches);
+        for (at, disc) in found.discs.iter().enumerate().filter(|(_, disc)| !disc.is_none()) {
+            let all = of_box(&found, at);
+            for _ in 0..30 {
+                // Close to a patch of it, and anywhere.
+                let n = all[(random.next() * all.len() as f64) as usize];
+                let far = 10.0_f64.powf(-4.0 * random.next());
+                let p = found.frame.into_local(found.point(n, [0.3, 0.3])) + random.point(far);
+                let least = all.iter().map(|n| found.closest(*n, p.to_array()).square).fold(f64::INFINITY, f64::min);
+                let gap = disc.gap(p.to_array());
+                assert!(gap <= least, "{gap} for {least}");
+                told += usize::from(gap > 0.5 * least);
+            }
+        }
+    }
+    assert!(told > 200, "{told} are told");
+}
+
+#[test]
+fn searches_of_a_box_begin_with_all_that_may_be_nearest() {
+    let mut random = Random(9);
+    let found = built(&sphere(16, false));
+    let mut few = 0;
+    for _ in 0..300 {
+        let (middle, half) = (random.point(1.2), DVec3::splat(0.1 * random.next()));
+        let [low, high] = [middle - half, middle + half].map(|p| p.to_array());
+        let far = found.near(middle.to_array()).square.sqrt();
+        let entries = found.entries(low, high, far);
+        let held: Vec<usize> = entries.all().iter().flat_map(|at| of_box(&found, *at as usize)).collect();
+        few += usize::from(held.len() < found.len() / 2);
+        for _ in 0..20 {
+            let p = middle + random.point(1.0) * half;
+            assert!(held.contains(&(found.search_one(p.to_array()).which as usize)));
+        }
+    }
+    assert!(few > 100, "{few} boxes begin with a half");
 }
 
 #[test]

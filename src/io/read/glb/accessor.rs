@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-use super::super::{LoadSettings, ReadError};
+use super::super::ReadError;
+use super::super::limits::Limits;
 use super::wrong;
 use crate::geom::to_byte;
 
@@ -78,7 +79,7 @@ impl Elements<'_> {
 }
 
 impl<'a> Data<'a> {
-    fn elements(&self, accessor: &Value, settings: &LoadSettings) -> Result<Option<Elements<'a>>, ReadError> {
+    fn elements(&self, accessor: &Value, settings: &Limits<'_>) -> Result<Option<Elements<'a>>, ReadError> {
         if accessor.is_null() {
             return Ok(None);
         }
@@ -140,7 +141,7 @@ impl<'a> Data<'a> {
     pub(super) fn floats<const N: usize>(
         &self,
         accessor: &Value,
-        settings: &LoadSettings,
+        settings: &Limits<'_>,
     ) -> Result<Option<Vec<[f32; N]>>, ReadError> {
         let Some(elements) = self.elements(accessor, settings)? else { return Ok(None) };
         if elements.width != N {
@@ -149,6 +150,7 @@ impl<'a> Data<'a> {
         }
         let mut list = Vec::with_capacity(elements.count);
         for i in 0..elements.count {
+            settings.step()?;
             let element: [f32; N] = std::array::from_fn(|k| elements.at(i, k) as f32);
             if let Some(x) = element.iter().find(|x| !x.is_finite()) {
                 return Err(wrong(&format!("accessor {accessor}: finite numbers"), format!("{x} in element {i}")));
@@ -159,7 +161,7 @@ impl<'a> Data<'a> {
     }
 
     /// Colours in sRGB, opaque if they do not say.
-    pub(super) fn colors(&self, accessor: &Value, settings: &LoadSettings) -> Result<Option<Vec<[u8; 4]>>, ReadError> {
+    pub(super) fn colors(&self, accessor: &Value, settings: &Limits<'_>) -> Result<Option<Vec<[u8; 4]>>, ReadError> {
         let Some(elements) = self.elements(accessor, settings)? else { return Ok(None) };
         if elements.width < 3 {
             return Err(wrong(&format!("accessor {accessor}: 3 or 4 numbers a colour"), elements.width.to_string()));
@@ -177,7 +179,7 @@ impl<'a> Data<'a> {
         &self,
         accessor: &Value,
         vertices: usize,
-        settings: &LoadSettings,
+        settings: &Limits<'_>,
     ) -> Result<Vec<u32>, ReadError> {
         let Some(elements) = self.elements(accessor, settings)? else { return Ok(Vec::new()) };
         if elements.width != 1 || !matches!(elements.component, Component::U8 | Component::U16 | Component::U32) {

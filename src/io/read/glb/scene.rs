@@ -3,11 +3,12 @@
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use serde_json::Value;
 
-use super::super::{LoadSettings, ReadError};
+use super::super::ReadError;
+use super::super::limits::Limits;
 use super::wrong;
 
 /// The meshes of the default scene, or of all nodes if there is no scene, and their maps.
-pub(super) fn nodes(json: &Value, settings: &LoadSettings) -> Result<Vec<(usize, DAffine3)>, ReadError> {
+pub(super) fn nodes(json: &Value, settings: &Limits<'_>) -> Result<Vec<(usize, DAffine3)>, ReadError> {
     let all = json["nodes"].as_array().map(Vec::as_slice).unwrap_or_default();
     let scene = json["scene"].as_u64().unwrap_or(0) as usize;
     let mut open: Vec<(usize, DAffine3)> = match &json["scenes"][scene]["nodes"] {

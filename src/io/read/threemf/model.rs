@@ -7,10 +7,11 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
+use super::super::ReadError;
 use super::super::error::{FilePlace, shown};
+use super::super::limits::Limits;
 use super::super::shape::Shape;
 use super::super::text::{number, position};
-use super::super::{LoadSettings, ReadError};
 use crate::io::LengthUnit;
 
 /// An object and where it stands.
@@ -75,7 +76,7 @@ impl Model {
         ReadError::content(FilePlace::Part { part: self.name.clone(), byte: self.at }, expected, found)
     }
 
-    pub(super) fn read(text: &str, name: &str, settings: &LoadSettings) -> Result<Model, ReadError> {
+    pub(super) fn read(text: &str, name: &str, settings: &Limits<'_>) -> Result<Model, ReadError> {
         let mut model = Model {
             name: name.into(),
             unit: LengthUnit::default(),

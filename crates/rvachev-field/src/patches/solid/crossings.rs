@@ -7,20 +7,23 @@
 //!              p
 //! ```
 //!
-//! That is so where triangles leave no opening: then numbers are whole. Of a packet of points that
-//! are close to each other few triangles are looked at, where the sum over all triangles takes all
-//! boxes of the hierarchy. Where a segment passes so close to an edge, or ends so close to a
-//! triangle, that rounding may tell, the sum is asked.
+//! That is so where triangles leave no opening: then numbers are whole. Of points that are close to
+//! each other few triangles are looked at, those about a block once for all of it, where the sum over
+//! all triangles takes all boxes of the hierarchy. Where a segment passes so close to an edge, or ends
+//! so close to a triangle, that rounding may tell, the sum is asked. Where distances are known, two
+//! points that are nearer to each other than either is to any triangle have the same number.
+
+use std::ops;
 
 use rvachev_num::Real;
 use rvachev_num::lanes::Lanes;
 
 use super::super::block::{BLOCK, Block};
-use super::super::face::wide;
-use super::super::hierarchy::PARENT;
-use super::super::packet::Packet;
+use super::super::face::{Face, Sides, wide};
+use super::super::hierarchy::{Box3, PARENT};
+use super::super::packet::{Packet, WIDEST};
 use super::winding::{Stack, Winding};
-use super::winding_field::placed;
+use super::winding_field::{FARTHEST, placed};
 use crate::Placement;
 use crate::kernel::Element;
 
@@ -33,6 +36,9 @@ const PRODUCTS: f64 = 16.0;
 /// Packets that more triangles may lie between are too wide.
 const MANY: usize = 256;
 
+/// So many triangles are looked at together, less the widest vector.
+const MOST: usize = 512;
+
 /// No larger than this is what makes no difference.
 const NOTHING: f64 = 1e-30;
 
@@ -42,41 +48,54 @@ const WHOLE: f64 = 0.2;
 /// A box of the frame.
 #[derive(Clone, Copy)]
 struct Hull {
-    low: [f64; 3],
-    high: [f64; 3],
+    low: [f32; 3],
+    high: [f32; 3],
 }
 
 impl Hull {
+    const NONE: Hull = Hull { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
+
     #[inline(always)]
     fn of(p: [f64; 3]) -> Hull {
+        let p = single(p);
         Hull { low: p, high: p }
     }
 
     #[inline(always)]
     fn with(&mut self, p: [f64; 3]) {
-        for (axis, x) in p.into_iter().enumerate() {
+        for (axis, x) in single(p).into_iter().enumerate() {
             self.low[axis] = if x < self.low[axis] { x } else { self.low[axis] };
             self.high[axis] = if x > self.high[axis] { x } else { self.high[axis] };
         }
     }
 
     #[inline(always)]
-    fn meets(&self, low: [f64; 3], high: [f64; 3]) -> bool {
+    fn meets(&self, low: [f32; 3], high: [f32; 3]) -> bool {
         let beyond = |axis: usize| low[axis] > self.high[axis] || high[axis] < self.low[axis];
         !(beyond(0) | beyond(1) | beyond(2))
     }
 
+    fn holds(&self, other: &Hull) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
+    }
+
     fn diagonal(&self) -> f64 {
-        let [x, y, z] = [0, 1, 2].map(|axis| self.high[axis] - self.low[axis]);
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(self.high[axis] - self.low[axis]));
         (x * x + y * y + z * z).sqrt()
     }
 }
 
-/// A point whose number is known.
+#[inline(always)]
+fn single([x, y, z]: [f64; 3]) -> [f32; 3] {
+    [x as f32, y as f32, z as f32]
+}
+
+/// A point whose number is known, and how far from it there is no triangle.
 #[derive(Clone, Copy)]
 struct Known {
     p: [f64; 3],
     number: f64,
+    apart: f64,
 }
 
 /// What the triangles between a point and a packet tell.
@@ -91,23 +110,26 @@ struct Crossed<R> {
 pub(super) struct Crossings<E> {
     block: Block<E>,
     found: [E; BLOCK],
+    near: Near<E>,
     stack: Stack,
 }
 
 impl<E: Element> Crossings<E> {
     #[inline(always)]
     pub(super) fn new() -> Crossings<E> {
-        Crossings { block: Block::new(), found: [E::default(); BLOCK], stack: Stack::default() }
+        Crossings { block: Block::new(), found: [E::default(); BLOCK], near: Near::new(), stack: Stack::default() }
     }
 }
 
 impl Winding {
-    /// How far above one half the numbers at some points are, 0 where they are in doubt.
+    /// How far above one half the numbers at some points are, 0 where they are in doubt. No triangle
+    /// is nearer to a point than `apart`, of which there may be none.
     #[inline(always)]
     pub(super) fn sides_by_crossings<L: Lanes<Element: Element> + Packet>(
         &self,
         simd: L::Token,
         points: [&[L::Element]; 3],
+        apart: &[L::Element],
         local: &Placement,
         work: &mut Crossings<L::Element>,
         out: &mut [L::Element],
@@ -121,7 +143,12 @@ impl Winding {
             z.store(&mut work.block.columns[2][at..at + L::WIDTH]);
             at += L::WIDTH;
         }
-        work.block.sort(len);
+        let per_unit = 1.0 / self.patches.unit();
+        for (to, apart) in work.block.numbers[..len].iter_mut().zip(apart) {
+            // What is farther out has been moved nearer.
+            *to = L::Element::from_f64((apart.to_f64() * per_unit).min(0.5 * FARTHEST));
+        }
+        work.block.sort(len, 0);
         let mut known: Option<Known> = None;
         let mut are_near = true;
         let mut at = 0;
@@ -132,36 +159,57 @@ impl Winding {
                 L::load(simd, &work.block.columns[1][here.clone()]),
                 L::load(simd, &work.block.columns[2][here.clone()]),
             ];
-            let from = if are_near { known.take().or_else(|| self.known(work.block.point(at))) } else { None };
-            let crossed = match from {
-                Some(from) => {
-                    let mut hull = Hull::of(from.p);
-                    let mut i = at;
-                    while i < at + L::WIDTH {
-                        hull.with(wide_of(work.block.point(i)));
-                        i += 1;
-                    }
-                    self.crossed(p, &from, &hull, &mut work.stack)
-                }
-                None => None,
+            let known_before = known.take();
+            let from = if !are_near {
+                None
+            } else if known_before.is_some() {
+                known_before
+            } else {
+                self.known(&work.block, at, &mut work.stack)
             };
-            are_near &= crossed.is_some() || from.is_none();
-            match (from, crossed) {
-                (Some(from), Some(Crossed { more, doubt })) => {
-                    let number = more + from.number;
-                    // In doubt it is one half.
-                    let half = number.lift(0.5);
-                    ((-doubt).select(number, half) - 0.5).store(&mut work.found[here]);
-                    let mut i = at;
-                    while i < at + L::WIDTH && known.is_none() {
-                        let above = work.found[i].to_f64();
-                        if above != 0.0 {
-                            known = Some(Known { p: wide_of(work.block.point(i)), number: above + 0.5 });
-                        }
-                        i += 1;
+            let Some(mut from) = from else {
+                are_near = false;
+                (self.roughly(p, &mut work.stack) - 0.5).store(&mut work.found[here]);
+                at += L::WIDTH;
+                continue;
+            };
+            let mut free = [L::Element::from_f64(-1.0); WIDEST];
+            if !apart.is_empty() {
+                spread(simd, p, &work.block, at, &mut from, &mut free);
+            }
+            let is_free = L::load(simd, &free[..L::WIDTH]);
+            let mut number = p[0].lift(from.number);
+            if is_free.any_below(p[0].lift(0.0)) {
+                let mut hull = Hull::of(from.p);
+                let mut i = 0;
+                while i < L::WIDTH {
+                    if free[i].to_f64() < 0.0 {
+                        hull.with(wide_of(work.block.point(at + i)));
                     }
+                    i += 1;
                 }
-                _ => (self.roughly(p, &mut work.stack) - 0.5).store(&mut work.found[here]),
+                if !work.near.hull.holds(&hull) {
+                    are_near = self.gather(&work.block, at..len, L::WIDTH, &from, &mut work.near, &mut work.stack);
+                }
+                let crossed = if are_near { self.crossed(simd, p, &from, &hull, &work.near) } else { None };
+                let Some(Crossed { more, doubt }) = crossed else {
+                    are_near = false;
+                    (self.roughly(p, &mut work.stack) - 0.5).store(&mut work.found[here]);
+                    at += L::WIDTH;
+                    continue;
+                };
+                // In doubt it is one half.
+                number = is_free.select(number, (-doubt).select(number + more, number.lift(0.5)));
+            }
+            (number - 0.5).store(&mut work.found[here]);
+            // The farthest from the triangles holds the farthest.
+            let mut i = at;
+            while i < at + L::WIDTH {
+                let (above, apart) = (work.found[i].to_f64(), work.block.numbers[i].to_f64());
+                if above != 0.0 && known.is_none_or(|known| apart > known.apart) {
+                    known = Some(Known { p: wide_of(work.block.point(i)), number: above + 0.5, apart });
+                }
+                i += 1;
             }
             at += L::WIDTH;
         }
@@ -169,28 +217,49 @@ impl Winding {
     }
 
     /// The number at a point, if that is whole.
-    fn known<E: Element>(&self, p: [E; 3]) -> Option<Known> {
-        let p = wide_of(p);
-        let number = self.number_at(p);
-        let whole = number.round();
-        ((number - whole).abs() < WHOLE).then_some(Known { p, number: whole })
+    fn known<E: Element>(&self, block: &Block<E>, at: usize, stack: &mut Stack) -> Option<Known> {
+        let (p, apart) = (wide_of(block.point(at)), block.numbers[at].to_f64());
+        let number = self.whole_at(p, stack).or_else(|| {
+            let number = self.number_at(p);
+            let whole = number.round();
+            ((number - whole).abs() < WHOLE).then_some(whole)
+        });
+        number.map(|number| Known { p, number, apart })
     }
 
-    /// What is crossed on the straight ways from a point to those of a packet; nothing if that is
-    /// much. The hull holds all of them.
+    /// The number at a point by the way there from outside, where triangles leave no opening and that
+    /// is certain.
+    #[inline(never)]
+    pub(super) fn whole_at(&self, p: [f64; 3], stack: &mut Stack) -> Option<f64> {
+        let from = Known { p: self.outside(p).filter(|_| self.is_closed())?, number: 0.0, apart: 0.0 };
+        self.more(p, &from, stack)
+    }
+
+    /// A point outside that is near along an axis.
+    fn outside(&self, p: [f64; 3]) -> Option<[f64; 3]> {
+        let root = self.patches.nodes.first()?;
+        let (mut out, mut least) = (p, f64::INFINITY);
+        for axis in 0..3 {
+            for end in [f64::from(root.low[axis]) - 1.0, f64::from(root.high[axis]) + 1.0] {
+                let far = (end - p[axis]).abs();
+                if far < least {
+                    (out, least) = (p, far);
+                    out[axis] = end;
+                }
+            }
+        }
+        Some(out)
+    }
+
+    /// Looks at all triangles that may meet a hull.
     #[inline(always)]
-    fn crossed<R: Packet>(&self, p: [R; 3], from: &Known, hull: &Hull, stack: &mut Stack) -> Option<Crossed<R>> {
-        let mut crossed = Crossed { more: p[0].lift(0.0), doubt: p[0].lift(-1.0) };
-        let [x, y, z] = from.p;
-        let d = [p[0] - x, p[1] - y, p[2] - z];
-        let reach = hull.diagonal();
-        let mut looked = 0;
+    fn each_within(&self, hull: &Hull, stack: &mut Stack, mut look: impl FnMut(u32, &Face, &Sides) -> bool) -> bool {
         let mut height = usize::from(!self.patches.nodes.is_empty());
         stack.0[0] = 0;
         while height > 0 {
             height -= 1;
             let node = &self.patches.nodes[stack.0[height] as usize];
-            if !hull.meets(wide(node.low), wide(node.high)) {
+            if !hull.meets(node.low, node.high) {
                 continue;
             }
             if node.count >= PARENT {
@@ -201,18 +270,208 @@ impl Winding {
             }
             for at in node.first..node.first + node.count {
                 let Some((face, sides)) = self.patches.at(at as usize) else { continue };
-                let between = Between::new(from.p, wide(face.a), wide(sides.e), wide(sides.f));
-                if !hull.meets(between.low, between.high) {
-                    continue;
+                if !look(at, face, sides) {
+                    return false;
                 }
-                looked += 1;
-                between.add(d, reach, &mut crossed);
-            }
-            if looked > MANY {
-                return None;
             }
         }
-        Some(crossed)
+        true
+    }
+
+    /// How the number at a point differs from that at another, if that is certain.
+    fn more(&self, p: [f64; 3], from: &Known, stack: &mut Stack) -> Option<f64> {
+        let mut crossed = Crossed { more: 0.0, doubt: -1.0 };
+        let mut hull = Hull::of(from.p);
+        hull.with(p);
+        let (d, reach) = ([p[0] - from.p[0], p[1] - from.p[1], p[2] - from.p[2]], hull.diagonal());
+        self.each_within(&hull, stack, |_, face, sides| {
+            let [low, high] = box_of(face, sides);
+            if hull.meets(low, high) {
+                Between::new(from.p, face, sides).add(d, reach, &mut crossed);
+            }
+            true
+        });
+        (crossed.doubt <= 0.0).then_some(crossed.more)
+    }
+
+    /// Finds the triangles about the points of a block from `at` on, as far as they are not many, and
+    /// a point that is known.
+    #[inline(never)]
+    fn gather<E: Element>(
+        &self,
+        block: &Block<E>,
+        points: ops::Range<usize>,
+        width: usize,
+        from: &Known,
+        near: &mut Near<E>,
+        stack: &mut Stack,
+    ) -> bool {
+        let mut to = points.end;
+        while to > points.start {
+            near.count = 0;
+            near.hull = Hull::of(from.p);
+            for at in points.start..to {
+                near.hull.with(wide_of(block.point(at)));
+            }
+            let hull = near.hull;
+            if self.each_within(&hull, stack, |at, face, sides| near.push(at, box_of(face, sides))) {
+                near.end(width);
+                return true;
+            }
+            // Half of the packets.
+            to = points.start + (to - points.start) / width / 2 * width;
+        }
+        near.count = 0;
+        false
+    }
+
+    /// What is crossed on the straight ways from a point to those of a packet; nothing if that is
+    /// much. The hull holds all of them.
+    #[inline(always)]
+    fn crossed<L: Lanes<Element: Element> + Packet>(
+        &self,
+        simd: L::Token,
+        p: [L; 3],
+        from: &Known,
+        hull: &Hull,
+        near: &Near<L::Element>,
+    ) -> Option<Crossed<L>> {
+        let mut crossed = Crossed { more: p[0].lift(0.0), doubt: p[0].lift(-1.0) };
+        let [x, y, z] = from.p;
+        let d = [p[0] - x, p[1] - y, p[2] - z];
+        let reach = hull.diagonal();
+        let mut looked = 0;
+        let mut at = 0;
+        while at < near.count {
+            let mut beyond = p[0].lift(-1.0);
+            let mut axis = 0;
+            while axis < 3 {
+                let low = L::load(simd, &near.low[axis][at..at + L::WIDTH]);
+                let high = L::load(simd, &near.high[axis][at..at + L::WIDTH]);
+                beyond = beyond.max(low - f64::from(hull.high[axis])).max(-high + f64::from(hull.low[axis]));
+                axis += 1;
+            }
+            let mut met = !beyond.lift(0.0).below(beyond) & ((1 << L::WIDTH) - 1);
+            while met != 0 {
+                let which = near.which[at + met.trailing_zeros() as usize];
+                met &= met - 1;
+                if let Some((face, sides)) = self.patches.at(which as usize) {
+                    Between::new(from.p, face, sides).add(d, reach, &mut crossed);
+                    looked += 1;
+                }
+            }
+            at += L::WIDTH;
+        }
+        if looked > MANY { None } else { Some(crossed) }
+    }
+}
+
+/// The triangles about some points, with their boxes.
+struct Near<E> {
+    /// They are those that meet it.
+    hull: Hull,
+    low: [[E; MOST]; 3],
+    high: [[E; MOST]; 3],
+    which: [u32; MOST],
+    count: usize,
+}
+
+impl<E: Element> Near<E> {
+    #[inline(always)]
+    fn new() -> Near<E> {
+        Near {
+            hull: Hull::NONE,
+            low: [[E::default(); MOST]; 3],
+            high: [[E::default(); MOST]; 3],
+            which: [0; MOST],
+            count: 0,
+        }
+    }
+
+    /// Adds a triangle, if it meets the hull, and says whether there was room.
+    #[inline(always)]
+    fn push(&mut self, at: u32, [low, high]: Box3) -> bool {
+        if !self.hull.meets(low, high) {
+            return true;
+        }
+        if self.count + WIDEST >= MOST {
+            return false;
+        }
+        for axis in 0..3 {
+            self.low[axis][self.count] = E::from_f64(f64::from(low[axis]));
+            self.high[axis][self.count] = E::from_f64(f64::from(high[axis]));
+        }
+        self.which[self.count] = at;
+        self.count += 1;
+        true
+    }
+
+    /// Fills the last vector with boxes that nothing meets.
+    #[inline(always)]
+    fn end(&mut self, width: usize) {
+        while !self.count.is_multiple_of(width) {
+            for axis in 0..3 {
+                self.low[axis][self.count] = E::from_f64(f64::from(f32::MAX));
+                self.high[axis][self.count] = E::from_f64(f64::from(f32::MAX));
+            }
+            self.count += 1;
+        }
+    }
+}
+
+/// The box about a triangle, wider by what rounding may do.
+#[inline(always)]
+fn box_of(face: &Face, sides: &Sides) -> Box3 {
+    const WIDER: f32 = 2.0 * CORNERS as f32;
+    let [mut low, mut high] = [face.a; 2];
+    for axis in 0..3 {
+        low[axis] += sides.e[axis].min(sides.f[axis]).min(0.0) - WIDER;
+        high[axis] += sides.e[axis].max(sides.f[axis]).max(0.0) + WIDER;
+    }
+    [low, high]
+}
+
+/// So often points of a packet are found by others of it.
+const ROUNDS: usize = 4;
+
+/// Finds points of a packet that are on the side of one that is known, which becomes one of them: two
+/// points are if they are nearer to each other than either is to any triangle. Of those `free` is
+/// not below 0.
+#[inline(always)]
+fn spread<L: Lanes<Element: Element> + Packet>(
+    simd: L::Token,
+    p: [L; 3],
+    block: &Block<L::Element>,
+    at: usize,
+    from: &mut Known,
+    free: &mut [L::Element; WIDEST],
+) {
+    let apart = L::load(simd, &block.numbers[at..at + L::WIDTH]);
+    let mut is_used = [false; WIDEST];
+    let mut round = 0;
+    while round < ROUNDS {
+        let [x, y, z] = from.p;
+        let d = [p[0] - x, p[1] - y, p[2] - z];
+        let square = d[0].mul_add(d[0], d[1].mul_add(d[1], d[2] * d[2]));
+        let ball = apart.max(apart.lift(from.apart.max(0.0)));
+        let all = L::load(simd, &free[..L::WIDTH]).max(ball * ball - square);
+        all.store(&mut free[..L::WIDTH]);
+        if !all.any_below(square.lift(0.0)) {
+            return;
+        }
+        let mut next = None;
+        let mut i = 0;
+        while i < L::WIDTH {
+            let apart = block.numbers[at + i].to_f64();
+            if free[i].to_f64() >= 0.0 && !is_used[i] && next.is_none_or(|(_, most)| apart > most) {
+                next = Some((i, apart));
+            }
+            i += 1;
+        }
+        let Some((i, apart)) = next else { return };
+        is_used[i] = true;
+        *from = Known { p: wide_of(block.point(at + i)), apart, ..*from };
+        round += 1;
     }
 }
 
@@ -224,20 +483,14 @@ struct Between {
     c: [f64; 3],
     /// Twice the area vector.
     n: [f64; 3],
-    /// Its box.
-    low: [f64; 3],
-    high: [f64; 3],
 }
 
 impl Between {
     #[inline(always)]
-    fn new(from: [f64; 3], a: [f64; 3], e: [f64; 3], f: [f64; 3]) -> Between {
-        let mut triangle =
-            Between { a: [0.0; 3], b: [0.0; 3], c: [0.0; 3], n: cross(e, f), low: [0.0; 3], high: [0.0; 3] };
+    fn new(from: [f64; 3], face: &Face, sides: &Sides) -> Between {
+        let (a, [e, f]) = (wide(face.a), sides.wide());
+        let mut triangle = Between { a: [0.0; 3], b: [0.0; 3], c: [0.0; 3], n: cross(e, f) };
         for axis in 0..3 {
-            let (least, most) = (e[axis].min(f[axis]).min(0.0), e[axis].max(f[axis]).max(0.0));
-            triangle.low[axis] = a[axis] + least - CORNERS;
-            triangle.high[axis] = a[axis] + most + CORNERS;
             triangle.a[axis] = a[axis] - from[axis];
             triangle.b[axis] = triangle.a[axis] + e[axis];
             triangle.c[axis] = triangle.a[axis] + f[axis];
@@ -260,21 +513,26 @@ impl Between {
         let start = -dot(n, a);
         // The plane is that of the triangle as it is stored.
         let per_height = 1.0 / (area * reach * PRODUCTS * R::EPSILON + NOTHING);
-        let [la, lb, lc] = [length(a), length(b), length(c)];
         // To the front it is crossed from behind only.
         let side = if start < 0.0 { 1.0 } else { -1.0 };
+        let k = side * per_height;
+        let beyond = along(d, [k * n[0], k * n[1], k * n[2]]) + k * start;
+        let is_in_plane = start.abs() * per_height <= 1.0;
+        if !is_in_plane && !beyond.lift(-1.0).any_below(beyond) {
+            // No way reaches the plane.
+            return;
+        }
+        let [la, lb, lc] = [length(a), length(b), length(c)];
         let u = along(d, edge::<R>(a, b, la + lb, reach, side));
         let v = along(d, edge::<R>(b, c, lb + lc, reach, side));
         let w = along(d, edge::<R>(c, a, lc + la, reach, side));
         let within = u.min(v).min(w);
-        if start.abs() * per_height <= 1.0 {
+        if is_in_plane {
             // It begins in the plane: nothing is certain but that it passes aside.
             let other = -u.max(v).max(w);
             to.doubt = to.doubt.max(within.max(other) + 1.0);
             return;
         }
-        let k = side * per_height;
-        let beyond = along(d, [k * n[0], k * n[1], k * n[2]]) + k * start;
         let passed = within.min(beyond);
         to.doubt = to.doubt.max(-passed.abs() + 1.0);
         to.more = to.more + passed.select(passed.lift(-side), passed.lift(0.0));

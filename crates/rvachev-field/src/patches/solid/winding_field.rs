@@ -16,7 +16,7 @@ use crate::{AnyField, Bounds, Chunk, Dual, Interval, ParamError, Placement, Zone
 use rvachev_num::symbol::Symbol;
 
 /// Points farther out than this, in units of the patches' frame, are moved there.
-const FARTHEST: f64 = 1e9;
+pub(super) const FARTHEST: f64 = 1e9;
 
 impl Winding {
     /// A placement into the frame of the patches.
@@ -37,12 +37,13 @@ impl Winding {
     }
 }
 
-/// The same by packets of points.
+/// The same by packets of points, none of them nearer to the triangles than what is told of `apart`.
 #[inline(always)]
 fn sides_on<L: Lanes<Element: Element> + Packet>(
     simd: L::Token,
     winding: &Winding,
     points: [&[L::Element]; 3],
+    apart: &[L::Element],
     local: &Placement,
     out: &mut [L::Element],
 ) {
@@ -52,7 +53,8 @@ fn sides_on<L: Lanes<Element: Element> + Packet>(
         while from < out.len() {
             let here = from..out.len().min(from + BLOCK);
             let points = [&points[0][here.clone()], &points[1][here.clone()], &points[2][here.clone()]];
-            winding.sides_by_crossings::<L>(simd, points, local, &mut crossings, &mut out[here]);
+            let apart = apart.get(here.clone()).unwrap_or_default();
+            winding.sides_by_crossings::<L>(simd, points, apart, local, &mut crossings, &mut out[here]);
             from += BLOCK;
         }
         return;
@@ -114,7 +116,8 @@ impl AnyField for Winding {
 
     fn value(&self, p: [f64; 3]) -> f64 {
         let local = self.patches.frame.into_local(DVec3::from_array(p));
-        self.number_at(local.to_array().map(|x| x.clamp(-FARTHEST, FARTHEST))) - 0.5
+        let local = local.to_array().map(|x| x.clamp(-FARTHEST, FARTHEST));
+        self.whole_at(local, &mut Stack::default()).unwrap_or_else(|| self.number_at(local)) - 0.5
     }
 
     /// Constant but at the triangles, if these are closed.
@@ -162,14 +165,18 @@ impl AnyField for Winding {
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
         let Chunk { points, placement, out: [out] } = chunk;
         let local = &self.local(placement);
-        self.lanes32_roughly(points, local, out);
+        self.lanes32_roughly(points, &[], local, out);
         settle(self, points, local, out);
     }
 
     /// For who asks for sides where these make a difference only: 0 where they are in doubt.
     fn lanes32_within(&self, chunk: Chunk<'_, f32, 1>, _band: f64) {
+        self.sides32(chunk, &[]);
+    }
+
+    fn sides32(&self, chunk: Chunk<'_, f32, 1>, apart: &[f32]) {
         let Chunk { points, placement, out: [out] } = chunk;
-        self.lanes32_roughly(points, &self.local(placement), out);
+        self.lanes32_roughly(points, apart, &self.local(placement), out);
         for above in out.iter_mut().filter(|above| Winding::is_doubtful(f64::from(**above) + 0.5)) {
             *above = 0.0;
         }
@@ -194,12 +201,15 @@ impl AnyField for Winding {
 }
 
 impl Winding {
-    fn lanes32_roughly(&self, points: [&[f32]; 3], local: &Placement, out: &mut [f32]) {
-        on_level!(simd => sides_on::<F32<_>>(simd, self, points, local, out), else self.sides(points, local, out))
+    fn lanes32_roughly(&self, points: [&[f32]; 3], apart: &[f32], local: &Placement, out: &mut [f32]) {
+        on_level!(
+            simd => sides_on::<F32<_>>(simd, self, points, apart, local, out),
+            else self.sides(points, local, out)
+        );
     }
 
     fn lanes64_roughly(&self, points: [&[f64]; 3], local: &Placement, out: &mut [f64]) {
-        on_level!(simd => sides_on::<F64<_>>(simd, self, points, local, out), else self.sides(points, local, out))
+        on_level!(simd => sides_on::<F64<_>>(simd, self, points, &[], local, out), else self.sides(points, local, out))
     }
 }
 
