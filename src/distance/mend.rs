@@ -21,8 +21,8 @@ use crate::solid::Node;
 use crate::{Bounds, Cancelled, Mesh, RFunction, Run, Solid};
 use rvachev_field::Patches;
 
-/// So many boxes are meshed, and boxes in these.
-const BOXES: usize = 4096;
+/// So many boxes are meshed, those of the farthest spots, and boxes in these.
+const BOXES: usize = 512;
 const DEEPEST: u32 = 2;
 
 /// Cells along a box, and how often their patches are split.
@@ -76,13 +76,10 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
         false => vec![group],
     };
     let found = if depth == 0 { Vec::new() } else { groups(&spots, tolerance) };
-    let parts: Vec<Group> = found.iter().cloned().flat_map(in_parts).collect();
-    // Of too many parts the whole groups are left.
-    let groups = if parts.len() > BOXES { found } else { parts };
-    if groups.is_empty() || groups.len() > BOXES {
-        quilt.take_spots(spots);
-        return Ok(());
-    }
+    let mut groups: Vec<Group> = found.into_iter().flat_map(in_parts).collect();
+    groups.sort_by(|(_, a), (_, b)| worst(b).total_cmp(&worst(a)));
+    groups.truncate(BOXES);
+    let mut left = vec![true; spots.len()];
     let mended = |(bounds, numbers): &Group, most: usize| {
         run.check()?;
         // In cells that are no smaller nothing would be seen that was not.
@@ -97,19 +94,20 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
         part.keep_near(&own);
         Ok(covers(&part, &own, slopes, NEAR * cell, run)?.then_some(part))
     };
-    let mut left: Vec<usize> = Vec::new();
     for groups in groups.chunks(AT_ONCE) {
         let most = most.saturating_sub(quilt.len() + spots.len()) / SHARE;
         let found = groups.par_iter().map(|group| mended(group, most));
         for ((_, numbers), part) in groups.iter().zip(found.collect::<Result<Vec<Option<Quilt>>, Cancelled>>()?) {
             match part {
-                Some(part) if part.error < worst(numbers) => quilt.take_all(part),
-                _ => left.extend(numbers),
+                Some(part) if part.error < worst(numbers) => {
+                    numbers.iter().for_each(|n| left[*n] = false);
+                    quilt.take_all(part);
+                }
+                _ => {}
             }
         }
     }
-    let mut spots: Vec<Option<Spot>> = spots.into_iter().map(Some).collect();
-    quilt.take_spots(left.into_iter().filter_map(|n| spots[n].take()).collect());
+    quilt.take_spots(spots.into_iter().zip(left).filter_map(|(spot, left)| left.then_some(spot)).collect());
     Ok(())
 }
 
@@ -142,13 +140,15 @@ fn parted((bounds, numbers): Group, spots: &[Spot], size: f64, tolerance: f64) -
     parts.into_values().collect()
 }
 
-/// Boxes about spots, apart from each other, and the numbers of the spots in each.
+/// Boxes about spots, apart from each other, and the numbers of the spots in each: no more than are
+/// meshed, about those that are farthest off.
 fn groups(spots: &[Spot], tolerance: f64) -> Vec<Group> {
+    let mut order: Vec<usize> = (0..spots.len()).collect();
+    order.sort_by(|a, b| spots[*b].off.total_cmp(&spots[*a].off));
     let mut groups: Vec<Group> = Vec::new();
-    for (number, spot) in spots.iter().enumerate() {
-        let (mut bounds, mut numbers) = (around(spot, tolerance), vec![number]);
-        // Neighbours follow each other mostly, and groups that have grown are the last.
-        while let Some(at) = groups.iter().rposition(|(other, _)| other.intersects(&bounds)) {
+    for number in order {
+        let (mut bounds, mut numbers) = (around(&spots[number], tolerance), vec![number]);
+        while let Some(at) = groups.iter().position(|(other, _)| other.intersects(&bounds)) {
             let (other, mut others) = groups.swap_remove(at);
             bounds = bounds.union(&other);
             // The longer list stays where it is, or a large group would be copied for each of its
@@ -158,9 +158,8 @@ fn groups(spots: &[Spot], tolerance: f64) -> Vec<Group> {
             }
             numbers.append(&mut others);
         }
-        groups.push((bounds, numbers));
-        if groups.len() > BOXES {
-            break;
+        if groups.len() < BOXES {
+            groups.push((bounds, numbers));
         }
     }
     groups
