@@ -22,6 +22,7 @@ use super::{Norm, Real};
 type Trees = Infallible;
 
 /// Where the trees of symbols live; a [`Symbol`] is a handle into it.
+#[cfg_attr(feature = "formula", derive(Default))]
 pub struct Arena(pub(super) Trees);
 
 /// A step of a formula on what was written down before.

@@ -10,12 +10,6 @@ use super::symbol::{Arena, GUARD, Step, Symbol};
 /// The trees of an arena.
 pub(super) type Trees = RefCell<Vec<Tree>>;
 
-impl Default for Arena {
-    fn default() -> Arena {
-        Arena(Trees::default())
-    }
-}
-
 impl Arena {
     /// A symbol for `tree`.
     pub fn symbol(&self, tree: Tree) -> Symbol<'_> {
