@@ -21,14 +21,15 @@ pub(super) fn first(plot: &Plot, seams: &mut Seams) -> Vec<Piece> {
     let facets = &plot.facets;
     let piece = |(corners, normals): (&[u32; 3], &[DVec3; 3])| {
         let hems = [0, 1, 2].map(|k| {
-            let next = (k + 1) % 3;
-            seams.hem([corners[k], corners[next]], [normals[k], normals[next]])
+            let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+            let toward = facets.positions[corners[last] as usize];
+            seams.hem([corners[k], corners[next]], toward, [normals[k], normals[next]])
         });
         Piece { corners: *corners, normals: *normals, hems, before: f64::INFINITY }
     };
     let pieces = facets.triangles.iter().zip(&facets.normals).map(piece).collect();
     for rim in &plot.rims {
-        let hem = seams.hem(rim.ends, rim.normals);
+        let hem = seams.hem(rim.ends, rim.toward, rim.normals);
         if rim.is_by_crease {
             seams.watch(hem);
         }
@@ -71,21 +72,22 @@ impl Piece {
         let (next, last) = ((at + 1) % 3, (at + 2) % 3);
         let [a, b, c] = [at, next, last].map(|k| self.corners[k]);
         let (m, [of_a, of_b]) = seams.crossing(self.hems[at], positions);
+        let crease = seams.ridge([m, c], [a, b].map(|v| positions[v as usize]));
         // The opposite corner is on the crease, and has the normal of either side.
-        let [c_a, c_b] = [of_a, of_b].map(|side| nearer(self.normals[last], side));
-        let crease = seams.ridge([m, c], [[of_a, c_a], [of_b, c_b]]);
+        let normals = |own: DVec3, other: DVec3| [own, other, nearer(self.normals[last], other)];
         let (n_a, n_b) = (self.normals[at], self.normals[next]);
-        let left = seams.hem([a, m], [n_a, of_a]);
-        let right = seams.hem([m, b], [of_b, n_b]);
+        let left = seams.hem([a, m], positions[c as usize], [n_a, of_a]);
+        let right = seams.hem([m, b], positions[c as usize], [of_b, n_b]);
         parts.push(Piece {
             corners: [a, m, c],
-            normals: [n_a, of_a, c_a],
+            normals: normals(self.normals[at], of_a),
             hems: [left, crease, self.hems[last]],
             before: f64::INFINITY,
         });
+        let [n_b, n_m, n_c] = normals(self.normals[next], of_b);
         parts.push(Piece {
             corners: [m, b, c],
-            normals: [of_b, n_b, c_b],
+            normals: [n_m, n_b, n_c],
             hems: [right, self.hems[next], crease.other()],
             before: f64::INFINITY,
         });
@@ -97,17 +99,18 @@ impl Piece {
         let [a, b, c] = [at, next, last].map(|k| self.corners[k]);
         let (m, [m_a, m_b]) = seams.crossing(self.hems[at], positions);
         let (k, [k_c, k_a]) = seams.crossing(self.hems[last], positions);
-        let crease = seams.ridge([m, k], [[m_a, k_a], [m_b, k_c]]);
+        let crease = seams.ridge([m, k], [a, b].map(|v| positions[v as usize]));
+        let p = |v: u32| positions[v as usize];
         let [n_a, n_b, n_c] = [at, next, last].map(|k| self.normals[k]);
-        let (am, mb) = (seams.hem([a, m], [n_a, m_a]), seams.hem([m, b], [m_b, n_b]));
-        let (ck, ka) = (seams.hem([c, k], [n_c, k_c]), seams.hem([k, a], [k_a, n_a]));
+        let (am, mb) = (seams.hem([a, m], p(k), [n_a, m_a]), seams.hem([m, b], p(c), [m_b, n_b]));
+        let (ck, ka) = (seams.hem([c, k], p(b), [n_c, k_c]), seams.hem([k, a], p(m), [k_a, n_a]));
         parts.push(Piece {
             corners: [a, m, k],
             normals: [self.normals[at], m_a, k_a],
             hems: [am, crease, ka],
             before: f64::INFINITY,
         });
-        let diagonal = seams.hem([k, b], [k_c, n_b]);
+        let diagonal = seams.hem([k, b], p(m), [k_c, n_b]);
         parts.push(Piece {
             corners: [m, b, k],
             normals: [m_b, self.normals[next], k_c],
@@ -131,16 +134,16 @@ impl Piece {
             let last = (at + 2) % 3;
             let (corner, to, from) = (self.corners[at], middles[at], middles[last]);
             let normals = [self.normals[at], between[at], between[last]];
-            let inner = seams.hem([to, from], [normals[1], normals[2]]);
+            let inner = seams.hem([to, from], positions[corner as usize], [normals[1], normals[2]]);
             let first = seams.part([corner, to], self.hems[at], [normals[0], normals[1]]);
             let second = seams.part([from, corner], self.hems[last], [normals[2], normals[0]]);
             Piece { corners: [corner, to, from], normals, hems: [first, inner, second], before: f64::INFINITY }
         };
         parts.extend([0, 1, 2].map(|at| outer(seams, at)));
         let hems = [
-            seams.hem([ab, bc], [between[0], between[1]]),
-            seams.hem([bc, ca], [between[1], between[2]]),
-            seams.hem([ca, ab], [between[2], between[0]]),
+            seams.hem([ab, bc], positions[ca as usize], [between[0], between[1]]),
+            seams.hem([bc, ca], positions[ab as usize], [between[1], between[2]]),
+            seams.hem([ca, ab], positions[bc as usize], [between[2], between[0]]),
         ];
         parts.push(Piece { corners: middles, normals: between, hems, before: f64::INFINITY });
     }

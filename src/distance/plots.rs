@@ -24,6 +24,7 @@ pub(super) struct Plot {
 #[derive(Clone, Copy)]
 pub(super) struct Rim {
     pub(super) ends: [u32; 2],
+    pub(super) toward: DVec3,
     pub(super) normals: [DVec3; 2],
     /// Whether the triangle has a corner on a crease.
     pub(super) is_by_crease: bool,
@@ -100,10 +101,11 @@ impl Iterator for Plots {
         }
         let first = self.shared.partition_point(|(of, ..)| *of < number);
         for (_, triangle, side) in self.shared[first..].iter().take_while(|(of, ..)| *of == number) {
-            let [a, b] = [0, 1].map(|k| (usize::from(*side) + k) % 3);
+            let [a, b, c] = [0, 1, 2].map(|k| (usize::from(*side) + k) % 3);
             let (corners, normals) = (all.triangles[*triangle as usize], all.normals[*triangle as usize]);
             plot.rims.push(Rim {
                 ends: [a, b].map(|k| own[corners[k] as usize]),
+                toward: all.positions[corners[c] as usize],
                 normals: [a, b].map(|k| normals[k]),
                 is_by_crease: corners.iter().any(|corner| self.creased[*corner as usize]),
             });

@@ -39,9 +39,8 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seam {
     pub(super) ends: [u32; 2],
-    /// The normals of the faces on both sides, as the triangles there have them; the same twice at a
-    /// border. They tell where the faces are from here, whatever the shape of the triangles.
-    faces: [DVec3; 2],
+    /// Points that the triangles on both sides reach to; the same twice at a border.
+    pub(super) toward: [DVec3; 2],
     pub(super) is_crease: bool,
     /// Whether a triangle beside it has a corner on a crease.
     is_by_crease: bool,
@@ -79,15 +78,16 @@ pub(super) struct Hem {
 }
 
 impl Seams {
-    /// The side between two vertices, seen from a triangle that has these normals there.
-    pub(super) fn hem(&mut self, ends: [u32; 2], normals: [DVec3; 2]) -> Hem {
+    /// The side between two vertices, seen from a triangle that reaches to a point and has these
+    /// normals there.
+    pub(super) fn hem(&mut self, ends: [u32; 2], toward: DVec3, normals: [DVec3; 2]) -> Hem {
         let side = usize::from(ends[0] > ends[1]);
         let (mut ends, mut normals) = (ends, normals);
         if side == 1 {
             ends.reverse();
             normals.reverse();
         }
-        let (first, face) = (ends[0] as usize, normals[0] + normals[1]);
+        let first = ends[0] as usize;
         self.starts.resize(self.starts.len().max(first + 1), NONE);
         let mut at = self.starts[first];
         while at != NONE && self.list[at as usize].ends[1] != ends[1] {
@@ -97,7 +97,7 @@ impl Seams {
             at = self.list.len() as u32;
             self.list.push(Seam {
                 ends,
-                faces: [face; 2],
+                toward: [toward; 2],
                 is_crease: false,
                 is_by_crease: false,
                 crossing: None,
@@ -116,30 +116,30 @@ impl Seams {
                 seam.is_crease |= differ[0].max(differ[1]) > CREASE;
             }
         }
-        self.list[at as usize].faces[side] = face;
+        self.list[at as usize].toward[side] = toward;
         Hem { seam: at, side }
     }
 
     /// The same side, which is part of a larger one.
     pub(super) fn part(&mut self, ends: [u32; 2], whole: Hem, normals: [DVec3; 2]) -> Hem {
-        let Seam { faces, is_crease, .. } = self.list[whole.seam as usize];
+        let Seam { toward, is_crease, .. } = self.list[whole.seam as usize];
         let known = self.list.len();
-        let hem = self.hem(ends, normals);
+        let hem = self.hem(ends, toward[whole.side], normals);
         let seam = &mut self.list[hem.seam as usize];
         if hem.seam as usize == known {
-            seam.faces[1 - hem.side] = faces[1 - whole.side];
+            // Seen from the other side the ends are the other way round.
+            (seam.toward[hem.side], seam.toward[1 - hem.side]) = (toward[whole.side], toward[1 - whole.side]);
             seam.is_crease = is_crease;
         }
         hem
     }
 
-    /// A side along a crease, seen from a triangle that has its ends in this order; the normals there
-    /// on both sides of it, those of the triangle first.
-    pub(super) fn ridge(&mut self, ends: [u32; 2], normals: [[DVec3; 2]; 2]) -> Hem {
-        let [own, beyond] = normals;
-        let hem = self.hem(ends, own);
+    /// A side along a crease, seen from a triangle that has its ends in this order; the surface on
+    /// both sides of it is towards two points, that of the triangle first.
+    pub(super) fn ridge(&mut self, ends: [u32; 2], toward: [DVec3; 2]) -> Hem {
+        let hem = self.hem(ends, toward[0], [DVec3::ZERO; 2]);
         let seam = &mut self.list[hem.seam as usize];
-        seam.faces[1 - hem.side] = beyond[0] + beyond[1];
+        (seam.toward[hem.side], seam.toward[1 - hem.side]) = (toward[0], toward[1]);
         seam.is_crease = true;
         hem
     }
@@ -423,9 +423,12 @@ impl Seam {
     /// Points on both sides of one on a crease, so far from it in parts of the side's length.
     fn beside(&self, point: DVec3, aside: f64, positions: &[DVec3]) -> [DVec3; 2] {
         let [a, b] = self.ends.map(|v| positions[v as usize]);
-        // A triangle is to the left of its sides.
-        let [left, right] = [0, 1].map(|side| self.faces[side].cross(b - a).normalize_or_zero());
-        [left, -right].map(|across| point + aside * a.distance(b) * across)
+        let along = (b - a).normalize_or_zero();
+        self.toward.map(|toward| {
+            let across = toward - point;
+            let across = (across - across.dot(along) * along).normalize_or_zero();
+            point + aside * a.distance(b) * across
+        })
     }
 
     /// How far the middle is off that of the straight side.

@@ -86,31 +86,28 @@ fn plots_are_told_of_what_is_beyond_their_sides() {
     let programs = compiled(&solid).unwrap();
     let mesh = sharp(&programs.surface, programs.bounds, 3.0, &Run::default()).unwrap();
     let facets = || Facets::new(&mesh, |_| true);
-    // The ends of a side in order, and the normals there.
-    type Ends = [[u64; 3]; 2];
-    let side = |p: [DVec3; 2], normals: [DVec3; 2]| -> (Ends, [DVec3; 2]) {
-        let mut ends = [0, 1].map(|k| (p[k].to_array().map(f64::to_bits), normals[k]));
-        ends.sort_unstable_by_key(|(end, _)| *end);
-        (ends.map(|(end, _)| end), ends.map(|(_, normal)| normal))
+    let side = |p: [DVec3; 2]| {
+        let mut ends = p.map(|p| p.to_array().map(f64::to_bits));
+        ends.sort_unstable();
+        ends
     };
     let (mut triangles, mut rims) = (0, HashMap::new());
     for plot in Plots::new(facets(), 64) {
         assert!(plot.facets.triangles.len() <= 64);
         triangles += plot.facets.triangles.len();
         let place = |v: u32| plot.facets.positions[v as usize];
-        let mut own: HashMap<Ends, (u32, [DVec3; 2])> = HashMap::new();
-        for (corners, normals) in plot.facets.triangles.iter().zip(&plot.facets.normals) {
-            for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-                let (ends, normals) = side([a, b].map(|k: usize| place(corners[k])), [a, b].map(|k| normals[k]));
-                own.entry(ends).or_insert((0, normals)).0 += 1;
+        let mut own: HashMap<[[u64; 3]; 2], (u32, DVec3)> = HashMap::new();
+        for [a, b, c] in &plot.facets.triangles {
+            for [a, b, c] in [[a, b, c], [b, c, a], [c, a, b]] {
+                own.entry(side([*a, *b].map(place))).or_insert((0, place(*c))).0 += 1;
             }
         }
-        let told: HashMap<Ends, [DVec3; 2]> =
-            plot.rims.iter().map(|rim| side(rim.ends.map(place), rim.normals)).collect();
-        for (ends, (count, normals)) in own {
-            assert_eq!(count == 1, told.contains_key(&ends), "a side of {count} triangles");
-            if let Some(beyond) = told.get(&ends) {
-                rims.entry(ends).or_insert_with(Vec::new).push([normals, *beyond]);
+        let of_rims = plot.rims.iter().map(|rim| (side(rim.ends.map(place)), rim.toward));
+        let told: HashMap<[[u64; 3]; 2], DVec3> = of_rims.collect();
+        for (side, (count, corner)) in own {
+            assert_eq!(count == 1, told.contains_key(&side), "a side of {count} triangles");
+            if let Some(toward) = told.get(&side) {
+                rims.entry(side).or_insert_with(Vec::new).push([corner, *toward]);
             }
         }
     }
@@ -171,16 +168,6 @@ fn no_patch_is_beyond_an_edge_that_its_side_is_crossed_by() {
     let patches = Patches::new(&quilt.patches, &Run::default()).unwrap();
     let foot = patches.nearest(DVec3::new(0.15, 0.0, 0.0) - 0.05 * (DVec3::X + DVec3::Z).normalize()).unwrap();
     assert!((foot.distance - 0.05).abs() < 5e-5, "{foot:?}");
-}
-
-/// A triangle between an edge and the chord of it reaches nowhere: where the faces beside the edge
-/// are is told by normals.
-#[test]
-fn slivers_along_an_edge_are_on_it() {
-    let at = |angle: f64, radius: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
-    let positions = [at(0.0, 0.15, 0.0), at(0.02, 0.15, 0.0), at(0.01, 0.15 - 3e-6, 0.0), at(0.01, 0.15, 0.003)];
-    let quilt = beside_a_pin(&positions, &[([1, 0, 2], true), ([0, 1, 3], false)]);
-    assert!(quilt.spots.is_empty() && quilt.error < 1e-4, "{} spots, {}", quilt.spots.len(), quilt.error);
 }
 
 #[test]
