@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use super::compiled_with;
 use super::facets::{Facets, sharp};
-use super::quilt::{Care, GROSS, MOST, Quilt, Spot};
+use super::quilt::{Care, GROSS, MOST, Quilt, Spot, often};
 use crate::eval::{Region, as_leaf};
 use crate::mesh::Slopes;
 use crate::solid::Node;
@@ -75,7 +75,7 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
         true => parted(group, &spots, size, tolerance),
         false => vec![group],
     };
-    let found = if depth == 0 { Vec::new() } else { groups(&spots, tolerance) };
+    let found = if depth == 0 { Vec::new() } else { groups(&spots, tolerance, run)? };
     let mut groups: Vec<Group> = found.into_iter().flat_map(in_parts).collect();
     groups.sort_by(|(_, a), (_, b)| worst(b).total_cmp(&worst(a)));
     groups.truncate(BOXES);
@@ -142,11 +142,12 @@ fn parted((bounds, numbers): Group, spots: &[Spot], size: f64, tolerance: f64) -
 
 /// Boxes about spots, apart from each other, and the numbers of the spots in each: no more than are
 /// meshed, about those that are farthest off.
-fn groups(spots: &[Spot], tolerance: f64) -> Vec<Group> {
+fn groups(spots: &[Spot], tolerance: f64, run: &Run) -> Result<Vec<Group>, Cancelled> {
     let mut order: Vec<usize> = (0..spots.len()).collect();
     order.sort_by(|a, b| spots[*b].off.total_cmp(&spots[*a].off));
     let mut groups: Vec<Group> = Vec::new();
-    for number in order {
+    for (count, number) in order.into_iter().enumerate() {
+        often(count, run)?;
         let (mut bounds, mut numbers) = (around(&spots[number], tolerance), vec![number]);
         while let Some(at) = groups.iter().position(|(other, _)| other.intersects(&bounds)) {
             let (other, mut others) = groups.swap_remove(at);
@@ -162,7 +163,7 @@ fn groups(spots: &[Spot], tolerance: f64) -> Vec<Group> {
             groups.push((bounds, numbers));
         }
     }
-    groups
+    Ok(groups)
 }
 
 /// Whether there are patches wherever spots are on the surface: what small cells do not show either

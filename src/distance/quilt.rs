@@ -322,7 +322,7 @@ impl Doubt {
 }
 
 /// Sees every now and then whether the work may go on.
-fn often(number: usize, run: &Run) -> Result<(), Cancelled> {
+pub(super) fn often(number: usize, run: &Run) -> Result<(), Cancelled> {
     if number.is_multiple_of(4096) { run.check() } else { Ok(()) }
 }
 

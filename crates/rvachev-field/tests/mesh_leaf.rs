@@ -138,6 +138,30 @@ fn sides_of_blocks_are_those_of_single_points() {
     }
 }
 
+/// What was too much to gather for one block of a chunk is not known to the next one.
+#[test]
+fn sides_of_many_blocks_are_those_of_single_points() {
+    let leaf = torus(160, 0);
+    let mut random = Random(11);
+    let block: Vec<Vec3> = (0..256).map(|_| (random.point(1.4) * DVec3::new(1.0, 1.0, 0.3)).as_vec3()).collect();
+    let points = [&block[..], &block].concat();
+    let columns = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<f32>>());
+    let wide = columns.each_ref().map(|column| column.iter().map(|x| f64::from(*x)).collect::<Vec<f64>>());
+    let (mut single, mut double) = (vec![0.0_f32; points.len()], vec![0.0_f64; points.len()]);
+    let placement = &Placement::IDENTITY;
+    leaf.lanes32_within(
+        Chunk { points: columns.each_ref().map(|column| &column[..]), placement, out: [&mut single] },
+        0.1,
+    );
+    leaf.lanes64(Chunk { points: wide.each_ref().map(|column| &column[..]), placement, out: [&mut double] });
+    for (i, p) in points.iter().enumerate() {
+        let value = leaf.value(p.as_dvec3().to_array());
+        let is_told = value.abs() > leaf.roundoff(1.6);
+        let same = |found: f64| (found > 0.0) == (value > 0.0);
+        assert!(!is_told || same(f64::from(single[i])) && same(double[i]), "{i}: {value} at {p}");
+    }
+}
+
 /// How far a point is from a triangle, by its plane and its sides.
 fn triangle_distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let side = |a: DVec3, b: DVec3| {

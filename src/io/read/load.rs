@@ -51,7 +51,9 @@ fn load<T>(
         let file = File::open(path)?;
         let bytes = file.metadata().map_or(0, |about| about.len());
         let (shape, scale) = format.read(file, &Limits::new(settings, bytes, &to_read))?;
-        made(shape, scale)
+        let made = made(shape, scale)?;
+        run.check()?;
+        Ok(made)
     };
     let loaded = read().map_err(|error| match error {
         ReadError::Cancelled(cancelled) => LoadError::Cancelled(cancelled),

@@ -29,7 +29,7 @@ pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<Shape, ReadErro
         match &element.name[..] {
             "vertex" => read_vertices(element, &mut values, settings, &mut shape)?,
             "face" => read_faces(element, &mut values, settings, vertices, &mut shape)?,
-            _ => skip(element, &mut values)?,
+            _ => skip(element, &mut values, settings)?,
         }
     }
     Ok(shape)
@@ -68,10 +68,11 @@ impl Values<'_> {
     }
 }
 
-fn skip(element: &Element, values: &mut Values<'_>) -> Result<(), ReadError> {
+fn skip(element: &Element, values: &mut Values<'_>, settings: &Limits<'_>) -> Result<(), ReadError> {
     // Of nothing there may be any number.
     let count = if element.properties.is_empty() { 0 } else { element.count };
     for _ in 0..count {
+        settings.step()?;
         for property in &element.properties {
             skip_property(property, values)?;
         }

@@ -66,7 +66,9 @@ impl Plane {
     /// The squares of how far points are from the box about the triangle in its plane, at least.
     #[inline(always)]
     pub(super) fn gap<R: Real>(&self, p: [R; 3]) -> R {
-        self.gap_of(self.local(p))
+        let [x, y, z] = self.local(p);
+        // The plane is in single precision.
+        self.gap_of([x, y, (z.abs() - SLACK).max(z.lift(0.0))])
     }
 
     #[inline(always)]

@@ -231,7 +231,8 @@ impl Winding {
     /// is certain.
     #[inline(never)]
     pub(super) fn whole_at(&self, p: [f64; 3], stack: &mut Stack) -> Option<f64> {
-        let from = Known { p: self.outside(p).filter(|_| self.is_closed())?, number: 0.0, apart: 0.0 };
+        let is_told = self.is_closed() && p.iter().all(|x| x.is_finite());
+        let from = Known { p: self.outside(p).filter(|_| is_told)?, number: 0.0, apart: 0.0 };
         self.more(p, &from, stack)
     }
 
@@ -321,7 +322,8 @@ impl Winding {
             // Half of the packets.
             to = points.start + (to - points.start) / width / 2 * width;
         }
-        near.count = 0;
+        // Nothing is known of the hull that was tried last.
+        (near.count, near.hull) = (0, Hull::NONE);
         false
     }
 
