@@ -218,8 +218,8 @@ impl Seams {
         self.of(hem).normals[hem.side]
     }
 
-    /// Has a side looked at between its ends and its middle: a crease may pass over it and come back,
-    /// though they are all on one face.
+    /// Has a side looked at between its ends and its middle: a crease may pass over it and come
+    /// back, though they are all on one face.
     pub(super) fn watch(&mut self, hem: Hem) {
         self.list[hem.seam as usize].is_by_crease = true;
     }

@@ -147,8 +147,8 @@ impl Mesh {
         self.save_on(path, settings, &Run::default())
     }
 
-    /// [`save_with`](Mesh::save_with) on a [`Run`], which is told roughly how much is written, and may
-    /// be cancelled: then whatever was at the path before is still there.
+    /// [`save_with`](Mesh::save_with) on a [`Run`], which is told roughly how much is written, and
+    /// may be cancelled: then whatever was at the path before is still there.
     ///
     /// ```
     /// use rvachev::error::SaveError;
@@ -252,8 +252,8 @@ impl PointCloud {
         self.save_on(path, &Run::default())
     }
 
-    /// [`save`](PointCloud::save) on a [`Run`], which is told roughly how much is written, and may be
-    /// cancelled: then whatever was at the path before is still there.
+    /// [`save`](PointCloud::save) on a [`Run`], which is told roughly how much is written, and may
+    /// be cancelled: then whatever was at the path before is still there.
     ///
     /// # Errors
     ///
@@ -285,7 +285,8 @@ impl Polyline {
     }
 }
 
-/// Saves `data` with the writer that `formats` has for the extension, in upper or lower case: so many
+/// Saves `data` with the writer that `formats` has for the extension, in upper or lower case: so
+/// many
 /// `bytes`, about.
 fn save<T, S>(
     data: &T,

@@ -113,8 +113,8 @@ fn by_position(mesh: &Mesh, run: &Run) -> Result<Vec<u32>, Cancelled> {
     Ok(first)
 }
 
-/// How the normal of a triangle changes over it: between those of the corners, which at a crease are
-/// those of its side.
+/// How the normal of a triangle changes over it: between those of the corners, which at a crease
+/// are those of its side.
 pub(crate) struct Slant {
     /// A corner, and the normal there, of any length.
     corner: DVec3,

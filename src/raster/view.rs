@@ -194,8 +194,8 @@ impl RasterView {
         if self.parallel { depth } else { self.point(x, y, depth).distance(self.camera.eye) }
     }
 
-    /// The point at pixel coordinates with a depth, how far along its ray it is, and the unit vector
-    /// along that.
+    /// The point at pixel coordinates with a depth, how far along its ray it is, and the unit
+    /// vector along that.
     #[inline]
     pub(crate) fn sight(&self, x: f64, y: f64, depth: f64) -> (DVec3, f64, DVec3) {
         let point = self.point(x, y, depth);

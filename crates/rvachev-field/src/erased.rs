@@ -165,8 +165,8 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn lanes32_within(&self, chunk: Chunk<'_, f32, 1>, _band: f64) {
         self.lanes32(chunk);
     }
-    /// Numbers with the signs of values, 0 where these are in doubt, at points that are farther from
-    /// where the sign turns than `apart`, in lengths of the leaf.
+    /// Numbers with the signs of values, 0 where these are in doubt, at points that are farther
+    /// from where the sign turns than `apart`, in lengths of the leaf.
     fn sides32(&self, chunk: Chunk<'_, f32, 1>, _apart: &[f32]) {
         self.lanes32_within(chunk, 0.0);
     }

@@ -7,11 +7,11 @@
 //!     box: turned by .0001                      not turned
 //! ```
 //!
-//! Vertices judge: nothing is moved by more than they leave open. Axes were settled when leaves were
-//! found; where vertices tell more of a turn than they leave open, the leaf is turned. A number that
-//! is not round, but equal to another one, becomes that one. A cut that ends where there is nothing
-//! left to cut is lengthened to a round number, as an end in a face would leave a skin there, or
-//! not, by the last digit.
+//! Vertices judge: nothing is moved by more than they leave open. Axes were settled when leaves
+//! were found; where vertices tell more of a turn than they leave open, the leaf is turned. A
+//! number that is not round, but equal to another one, becomes that one. A cut that ends where
+//! there is nothing left to cut is lengthened to a round number, as an end in a face would leave a
+//! skin there, or not, by the last digit.
 
 use glam::{DAffine3, DMat3, DVec3};
 

@@ -124,8 +124,8 @@ impl Mesh {
     ///
     /// # Errors
     ///
-    /// [`LoadError`], naming the file and the cause, with the line or the byte, or that the work was
-    /// cancelled.
+    /// [`LoadError`], naming the file and the cause, with the line or the byte, or that the work
+    /// was cancelled.
     pub fn load_on(path: impl AsRef<Path>, settings: &LoadSettings, run: &Run) -> Result<Mesh, LoadError> {
         load(path.as_ref(), false, settings, run, Shape::into_mesh)
     }
@@ -152,13 +152,13 @@ impl PointCloud {
         PointCloud::load_on(path, settings, &Run::default())
     }
 
-    /// [`load_with`](PointCloud::load_with) on a [`Run`], which is told roughly how much is read, and
-    /// may be cancelled.
+    /// [`load_with`](PointCloud::load_with) on a [`Run`], which is told roughly how much is read,
+    /// and may be cancelled.
     ///
     /// # Errors
     ///
-    /// [`LoadError`], naming the file and the cause, with the line or the byte, or that the work was
-    /// cancelled.
+    /// [`LoadError`], naming the file and the cause, with the line or the byte, or that the work
+    /// was cancelled.
     pub fn load_on(path: impl AsRef<Path>, settings: &LoadSettings, run: &Run) -> Result<PointCloud, LoadError> {
         load(path.as_ref(), true, settings, run, Shape::into_cloud)
     }

@@ -41,7 +41,8 @@ impl SurfaceDistance {
         );
     }
 
-    /// Numbers with the signs of points, given the squares of their distances in units of the frame.
+    /// Numbers with the signs of points, given the squares of their distances in units of the
+    /// frame.
     fn sides32(&self, points: [&[f32]; 3], placement: &Placement, squares: &[f32], out: &mut [f32]) {
         let (unit, error) = (self.patches.unit() as f32, self.error() as f32);
         let mut apart = [0.0; BLOCK];

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!      .------.
-//!      |    / |       Of a surface that is oblique to the axes a box is as thick as it is wide, and
-//!      |  /   |       seems to be nearer than the surface by that. A disc along the surface is thin.
+//!      |    / |       Of a surface that is oblique to the axes a box is as thick as it is wide,
+//!      |  /   |       and seems to be nearer by that. A disc along the surface is thin.
 //!      |/     |
 //!      '------'
 //! ```
@@ -81,8 +81,8 @@ impl Disc {
         let sag = faces.iter().fold(0.0, |most: f64, face| most.max(f64::from(face.sag)));
         let half = 0.5 * (most - least) + sag;
         let radius = (reach.max(0.0).sqrt() + sag + SLACK).max(half) * (1.0 + GROWTH);
-        // How far from the middle points reach that are no nearer to the box, or to the disc, than to
-        // the surface, as high above it as the disc is wide.
+        // How far from the middle points reach that are no nearer to the box, or to the disc, than
+        // to the surface, as high above it as the disc is wide.
         let (size, along) = (high - low, normal.abs());
         let across = along.x * size.y * size.z + along.y * size.z * size.x + along.z * size.x * size.y;
         let of_box = (across / std::f64::consts::PI).sqrt() + (radius * along.dot(size)).sqrt();

@@ -5,18 +5,18 @@
 //! ```
 //!
 //! A quadratic patch follows a smooth surface to the fourth power of its size, where a flat
-//! triangle follows it to the second: a sphere takes a few hundred patches where it would take
-//! a hundred thousand triangles. A hierarchy of boxes (a BVH split by the surface area
-//! heuristic), the small ones of them beside discs along the surface, finds the few patches that may
-//! be nearest; the nearest point of a patch is found
-//! by Newton's method from the foot on its flat triangle.
+//! triangle follows it to the second: a sphere takes a few hundred patches where it would take a
+//! hundred thousand triangles. A hierarchy of boxes (a BVH split by the surface area heuristic),
+//! the small ones of them beside discs along the surface, finds the few patches that may be
+//! nearest; the nearest point of a patch is found by Newton's method from the foot on its flat
+//! triangle.
 //!
 //! What is found of a patch is a function of the point and the patch alone, and the distance is
 //! the least of all, so neither the order of the search nor where it starts shows in the result.
 //!
-//! Chunks of points are sorted into compact packets, longest across the surface, and all points of a
-//! packet go through the hierarchy at once, on SIMD lanes, from the boxes on that may hold what is
-//! nearest to any point of the chunk. What is left to do of curved patches is done in vectors of
+//! Chunks of points are sorted into compact packets, longest across the surface, and all points of
+//! a packet go through the hierarchy at once, on SIMD lanes, from the boxes on that may hold what
+//! is nearest to any point of the chunk. What is left to do of curved patches is done in vectors of
 //! pairs of a point and a patch.
 //!
 //! The geometry is kept in single precision, as lengths of a frame about the surface's middle
@@ -186,8 +186,8 @@ impl Patches {
         if self.nodes.is_empty() { &[] } else { Entries::ALL }
     }
 
-    /// A patch that is about as near to a point of the surface's frame as any, and the square of how
-    /// far it is at most.
+    /// A patch that is about as near to a point of the surface's frame as any, and the square of
+    /// how far it is at most.
     #[inline(never)]
     fn near(&self, local: [f64; 3]) -> Best<f64> {
         self.search(local, self.all(), &[], Range::all(0.0), &mut Stack::new(0.0), &mut Any)

@@ -224,8 +224,8 @@ impl Patches {
         if disc.is_none() { gap(&self.nodes[at as usize], p) } else { disc.gap(p) }
     }
 
-    /// Boxes that hold all that may be nearest to points of a box, whose middle is that far from some
-    /// patch at most: the nearest to the middle comes last.
+    /// Boxes that hold all that may be nearest to points of a box, whose middle is that far from
+    /// some patch at most: the nearest to the middle comes last.
     pub(super) fn entries(&self, low: [f64; 3], high: [f64; 3], far: f64) -> Entries {
         let mut entries = Entries { nodes: [0; ENTRIES], count: usize::from(!self.nodes.is_empty()) };
         let half = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));

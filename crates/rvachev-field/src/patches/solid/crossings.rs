@@ -8,87 +8,32 @@
 //! ```
 //!
 //! That is so where triangles leave no opening: then numbers are whole. Of points that are close to
-//! each other few triangles are looked at, those about a block once for all of it, where the sum over
-//! all triangles takes all boxes of the hierarchy. Where a segment passes so close to an edge, or ends
-//! so close to a triangle, that rounding may tell, the sum is asked. Where distances are known, two
-//! points that are nearer to each other than either is to any triangle have the same number.
+//! each other few triangles are looked at, those about a block once for all of it, where the sum
+//! over all triangles takes all boxes of the hierarchy. Where a segment passes so close to an edge,
+//! or ends so close to a triangle, that rounding may tell, the sum is asked. Where distances are
+//! known, two points that are nearer to each other than either is to any triangle have the same
+//! number.
 
 use std::ops;
 
-use rvachev_num::Real;
 use rvachev_num::lanes::Lanes;
 
 use super::super::block::{BLOCK, Block};
-use super::super::face::{Face, Sides, wide};
-use super::super::hierarchy::{Box3, PARENT};
+use super::super::face::{Face, Sides};
+use super::super::hierarchy::PARENT;
 use super::super::packet::{Packet, WIDEST};
+use super::between::{Between, Crossed};
+use super::near::{Hull, Near, box_of};
 use super::winding::{Stack, Winding};
 use super::winding_field::{FARTHEST, placed};
 use crate::Placement;
 use crate::kernel::Element;
 
-/// Stored corners of neighbouring triangles differ by less, in units of the frame.
-const CORNERS: f64 = 4.0 * f32::EPSILON as f64;
-
-/// Products of three factors are off by less than so many units in the last place.
-const PRODUCTS: f64 = 16.0;
-
 /// Packets that more triangles may lie between are too wide.
 const MANY: usize = 256;
 
-/// So many triangles are looked at together, less the widest vector.
-const MOST: usize = 512;
-
-/// No larger than this is what makes no difference.
-const NOTHING: f64 = 1e-30;
-
 /// Numbers are whole to this.
 const WHOLE: f64 = 0.2;
-
-/// A box of the frame.
-#[derive(Clone, Copy)]
-struct Hull {
-    low: [f32; 3],
-    high: [f32; 3],
-}
-
-impl Hull {
-    const NONE: Hull = Hull { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
-
-    #[inline(always)]
-    fn of(p: [f64; 3]) -> Hull {
-        let p = single(p);
-        Hull { low: p, high: p }
-    }
-
-    #[inline(always)]
-    fn with(&mut self, p: [f64; 3]) {
-        for (axis, x) in single(p).into_iter().enumerate() {
-            self.low[axis] = if x < self.low[axis] { x } else { self.low[axis] };
-            self.high[axis] = if x > self.high[axis] { x } else { self.high[axis] };
-        }
-    }
-
-    #[inline(always)]
-    fn meets(&self, low: [f32; 3], high: [f32; 3]) -> bool {
-        let beyond = |axis: usize| low[axis] > self.high[axis] || high[axis] < self.low[axis];
-        !(beyond(0) | beyond(1) | beyond(2))
-    }
-
-    fn holds(&self, other: &Hull) -> bool {
-        (0..3).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
-    }
-
-    fn diagonal(&self) -> f64 {
-        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(self.high[axis] - self.low[axis]));
-        (x * x + y * y + z * z).sqrt()
-    }
-}
-
-#[inline(always)]
-fn single([x, y, z]: [f64; 3]) -> [f32; 3] {
-    [x as f32, y as f32, z as f32]
-}
 
 /// A point whose number is known, and how far from it there is no triangle.
 #[derive(Clone, Copy)]
@@ -96,14 +41,6 @@ struct Known {
     p: [f64; 3],
     number: f64,
     apart: f64,
-}
-
-/// What the triangles between a point and a packet tell.
-struct Crossed<R> {
-    /// How much more the numbers of the packet are.
-    more: R,
-    /// Positive where rounding may have told.
-    doubt: R,
 }
 
 /// What is kept from one chunk to the next of a call.
@@ -122,8 +59,8 @@ impl<E: Element> Crossings<E> {
 }
 
 impl Winding {
-    /// How far above one half the numbers at some points are, 0 where they are in doubt. No triangle
-    /// is nearer to a point than `apart`, of which there may be none.
+    /// How far above one half the numbers at some points are, 0 where they are in doubt. No
+    /// triangle is nearer to a point than `apart`, of which there may be none.
     #[inline(always)]
     pub(super) fn sides_by_crossings<L: Lanes<Element: Element> + Packet>(
         &self,
@@ -227,8 +164,8 @@ impl Winding {
         number.map(|number| Known { p, number, apart })
     }
 
-    /// The number at a point by the way there from outside, where triangles leave no opening and that
-    /// is certain.
+    /// The number at a point by the way there from outside, where triangles leave no opening and
+    /// that is certain.
     #[inline(never)]
     pub(super) fn whole_at(&self, p: [f64; 3], stack: &mut Stack) -> Option<f64> {
         let is_told = self.is_closed() && p.iter().all(|x| x.is_finite());
@@ -295,8 +232,8 @@ impl Winding {
         (crossed.doubt <= 0.0).then_some(crossed.more)
     }
 
-    /// Finds the triangles about the points of a block from `at` on, as far as they are not many, and
-    /// a point that is known.
+    /// Finds the triangles about the points of a block from `at` on, as far as they are not many,
+    /// and a point that is known.
     #[inline(never)]
     fn gather<E: Element>(
         &self,
@@ -368,77 +305,12 @@ impl Winding {
     }
 }
 
-/// The triangles about some points, with their boxes.
-struct Near<E> {
-    /// They are those that meet it.
-    hull: Hull,
-    low: [[E; MOST]; 3],
-    high: [[E; MOST]; 3],
-    which: [u32; MOST],
-    count: usize,
-}
-
-impl<E: Element> Near<E> {
-    #[inline(always)]
-    fn new() -> Near<E> {
-        Near {
-            hull: Hull::NONE,
-            low: [[E::default(); MOST]; 3],
-            high: [[E::default(); MOST]; 3],
-            which: [0; MOST],
-            count: 0,
-        }
-    }
-
-    /// Adds a triangle, if it meets the hull, and says whether there was room.
-    #[inline(always)]
-    fn push(&mut self, at: u32, [low, high]: Box3) -> bool {
-        if !self.hull.meets(low, high) {
-            return true;
-        }
-        if self.count + WIDEST >= MOST {
-            return false;
-        }
-        for axis in 0..3 {
-            self.low[axis][self.count] = E::from_f64(f64::from(low[axis]));
-            self.high[axis][self.count] = E::from_f64(f64::from(high[axis]));
-        }
-        self.which[self.count] = at;
-        self.count += 1;
-        true
-    }
-
-    /// Fills the last vector with boxes that nothing meets.
-    #[inline(always)]
-    fn end(&mut self, width: usize) {
-        while !self.count.is_multiple_of(width) {
-            for axis in 0..3 {
-                self.low[axis][self.count] = E::from_f64(f64::from(f32::MAX));
-                self.high[axis][self.count] = E::from_f64(f64::from(f32::MAX));
-            }
-            self.count += 1;
-        }
-    }
-}
-
-/// The box about a triangle, wider by what rounding may do.
-#[inline(always)]
-fn box_of(face: &Face, sides: &Sides) -> Box3 {
-    const WIDER: f32 = 2.0 * CORNERS as f32;
-    let [mut low, mut high] = [face.a; 2];
-    for axis in 0..3 {
-        low[axis] += sides.e[axis].min(sides.f[axis]).min(0.0) - WIDER;
-        high[axis] += sides.e[axis].max(sides.f[axis]).max(0.0) + WIDER;
-    }
-    [low, high]
-}
-
 /// So often points of a packet are found by others of it.
 const ROUNDS: usize = 4;
 
-/// Finds points of a packet that are on the side of one that is known, which becomes one of them: two
-/// points are if they are nearer to each other than either is to any triangle. Of those `free` is
-/// not below 0.
+/// Finds points of a packet that are on the side of one that is known, which becomes one of them:
+/// two points are if they are nearer to each other than either is to any triangle. Of those `free`
+/// is not below 0.
 #[inline(always)]
 fn spread<L: Lanes<Element: Element> + Packet>(
     simd: L::Token,
@@ -475,99 +347,6 @@ fn spread<L: Lanes<Element: Element> + Packet>(
         *from = Known { p: wide_of(block.point(at + i)), apart, ..*from };
         round += 1;
     }
-}
-
-/// A triangle as seen from a point.
-struct Between {
-    /// From the point to the corners.
-    a: [f64; 3],
-    b: [f64; 3],
-    c: [f64; 3],
-    /// Twice the area vector.
-    n: [f64; 3],
-}
-
-impl Between {
-    #[inline(always)]
-    fn new(from: [f64; 3], face: &Face, sides: &Sides) -> Between {
-        let (a, [e, f]) = (wide(face.a), sides.wide());
-        let mut triangle = Between { a: [0.0; 3], b: [0.0; 3], c: [0.0; 3], n: cross(e, f) };
-        for axis in 0..3 {
-            triangle.a[axis] = a[axis] - from[axis];
-            triangle.b[axis] = triangle.a[axis] + e[axis];
-            triangle.c[axis] = triangle.a[axis] + f[axis];
-        }
-        triangle
-    }
-
-    /// Adds whether it is crossed on the ways `d`, none of them longer than `reach`.
-    ///
-    /// The way from the point along d passes the triangle if d·(A × B), d·(B × C) and d·(C × A)
-    /// have the sign of d·N, and ends beyond its plane. Each of them is divided by what rounding
-    /// may do to it.
-    #[inline(always)]
-    fn add<R: Packet>(&self, d: [R; 3], reach: f64, to: &mut Crossed<R>) {
-        let Between { a, b, c, n, .. } = *self;
-        let area = length(n);
-        if area <= 0.0 {
-            return;
-        }
-        let start = -dot(n, a);
-        // The plane is that of the triangle as it is stored.
-        let per_height = 1.0 / (area * reach * PRODUCTS * R::EPSILON + NOTHING);
-        // To the front it is crossed from behind only.
-        let side = if start < 0.0 { 1.0 } else { -1.0 };
-        let k = side * per_height;
-        let beyond = along(d, [k * n[0], k * n[1], k * n[2]]) + k * start;
-        let is_in_plane = start.abs() * per_height <= 1.0;
-        if !is_in_plane && !beyond.lift(-1.0).any_below(beyond) {
-            // No way reaches the plane.
-            return;
-        }
-        let [la, lb, lc] = [length(a), length(b), length(c)];
-        let u = along(d, edge::<R>(a, b, la + lb, reach, side));
-        let v = along(d, edge::<R>(b, c, lb + lc, reach, side));
-        let w = along(d, edge::<R>(c, a, lc + la, reach, side));
-        let within = u.min(v).min(w);
-        if is_in_plane {
-            // It begins in the plane: nothing is certain but that it passes aside.
-            let other = -u.max(v).max(w);
-            to.doubt = to.doubt.max(within.max(other) + 1.0);
-            return;
-        }
-        let passed = within.min(beyond);
-        to.doubt = to.doubt.max(-passed.abs() + 1.0);
-        to.more = to.more + passed.select(passed.lift(-side), passed.lift(0.0));
-    }
-}
-
-/// Across the plane of a point and a side, as long as it takes for ways up to `reach` to have
-/// products of 1 where rounding may tell; `far` is how far both ends are.
-#[inline(always)]
-fn edge<R: Packet>(v: [f64; 3], w: [f64; 3], far: f64, reach: f64, side: f64) -> [f64; 3] {
-    let across = cross(v, w);
-    let k = side / (reach * (far * CORNERS + length(across) * PRODUCTS * R::EPSILON) + NOTHING);
-    [k * across[0], k * across[1], k * across[2]]
-}
-
-#[inline(always)]
-fn along<R: Real>(d: [R; 3], v: [f64; 3]) -> R {
-    d[0].scale_add(v[0], d[1].scale_add(v[1], d[2] * v[2]))
-}
-
-#[inline(always)]
-fn cross(v: [f64; 3], w: [f64; 3]) -> [f64; 3] {
-    [v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]]
-}
-
-#[inline(always)]
-fn dot(v: [f64; 3], w: [f64; 3]) -> f64 {
-    v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
-}
-
-#[inline(always)]
-fn length(v: [f64; 3]) -> f64 {
-    dot(v, v).sqrt()
 }
 
 #[inline(always)]

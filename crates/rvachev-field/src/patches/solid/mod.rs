@@ -11,8 +11,10 @@
 //! Triangles that overlap count as their union; those within it, where w does not pass ½, are no
 //! surface, though the distance is measured from them too.
 
+mod between;
 mod crossings;
 mod gaps;
+mod near;
 mod rim;
 mod turned;
 mod values;

@@ -37,7 +37,8 @@ impl Winding {
     }
 }
 
-/// The same by packets of points, none of them nearer to the triangles than what is told of `apart`.
+/// The same by packets of points, none of them nearer to the triangles than what is told of
+/// `apart`.
 #[inline(always)]
 fn sides_on<L: Lanes<Element: Element> + Packet>(
     simd: L::Token,
