@@ -182,6 +182,26 @@ fn spots_that_small_cells_do_not_show_are_kept_and_told() {
     assert!(!quilt.patches.is_empty() && quilt.error >= OFF, "{} patches, {}", quilt.patches.len(), quilt.error);
 }
 
+/// Of more spots than are mended the farthest are.
+#[test]
+fn the_farthest_of_many_spots_are_mended() {
+    const ROW: usize = 24;
+    let top = Solid::cuboid([100.0, 100.0, 2.0]).translate([50.0, 50.0, -1.0]);
+    let programs = compiled(&top).unwrap();
+    // One beside the other, and farther off one by one.
+    let spot = |n: usize| {
+        let off = 0.01 + 1e-4 * n as f64;
+        let at = 4.0 * DVec3::new((n % ROW) as f64, (n / ROW) as f64, 0.0) + DVec3::new(2.0, 2.0, off);
+        Spot { patch: Patch::flat([DVec3::ZERO, 0.5 * DVec3::X, 0.5 * DVec3::Y].map(|p| at + p)), off }
+    };
+    let slopes = Slopes { program: &programs.surface, precision: 1e-3 };
+    let mut quilt = Quilt::of((0..ROW * ROW).map(spot).collect(), 1e-3);
+    mend(&mut quilt, &slopes, 1.0, 1e-3, &Run::default()).unwrap();
+    let left: Vec<f64> = quilt.patches.iter().map(|patch| patch.corners[0].z).filter(|off| *off > 5e-3).collect();
+    assert!(!left.is_empty() && left.len() < 80, "{} of {} are left", left.len(), ROW * ROW);
+    assert!(left.iter().all(|off| *off < 0.018), "{left:?}");
+}
+
 /// Where there are too many patches to see whether splitting helps, it does not.
 #[test]
 fn patches_are_no_more_than_they_may_be() {
