@@ -6,4 +6,4 @@
 #[doc(inline)]
 pub use rvachev_field::{Along, COORDINATE_LIMIT, Field, Kernel, Segment, VALUE_LIMIT, chained};
 #[doc(inline)]
-pub use rvachev_num::{Dual, Monotone, Monotone3, Norm, Real};
+pub use rvachev_num::{Dual, Jet, Monotone, Monotone3, Norm, Real};

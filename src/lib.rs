@@ -480,7 +480,7 @@ use {
     catalogue::{Parameter, Range, Unit, Value, ValueError},
     error::{CameraError, ImageError, MeshError, SaveError},
     eval::Palette,
-    field::{COORDINATE_LIMIT, Dual, Field, Norm, Real},
+    field::{COORDINATE_LIMIT, Dual, Field, Jet, Norm, Real},
     form::{Form, Operation, Repetition},
     geom::{Projection, RangeImage, RangeImageError, Rays},
     law::{BuiltInLaw, Law, LawTable, LinearLaw, SineWave, SmoothStep},

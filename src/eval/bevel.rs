@@ -11,16 +11,19 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use super::chamfer::Chamfer;
+use super::chamfer::{Chamfer, Parts};
 use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
 use super::{Program, Tape};
-use crate::{Bounds, Dual, Interval, ParamError, Real};
-use rvachev_field::{AnyField, Chunk, VALUE_LIMIT, Way, Zone, bits};
+use crate::{Bounds, Dual, Interval, Jet, ParamError, Real};
+use rvachev_field::{AnyField, Chunk, VALUE_LIMIT, Way, Zone, bits, chained, mean_value_range};
 use rvachev_num::symbol::Symbol;
 
 /// Differences of gradients are taken over this part of the leg, point by point and in lanes.
 const TURN: f64 = 1e-4;
 const TURN_OF_LANES: f64 = 1e-2;
+
+/// How far off T may be at a point, in proportion to the lengths about it.
+const ROUNDING: f64 = 1e-12;
 
 /// A value and its gradient.
 pub(super) type Sample = (f64, DVec3);
@@ -48,11 +51,6 @@ impl Bevel {
         [0, 1].map(|i| self.operands[i].range_zone(zone) * Interval::point(self.signs[i]))
     }
 
-    /// The operands' values over a box, with their slopes along the variables of `p`.
-    fn duals(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 2] {
-        [0, 1].map(|i| self.operands[i].evaluate(p, &mut Vec::new()) * self.signs[i])
-    }
-
     fn samples(&self, p: DVec3) -> [Sample; 2] {
         [0, 1].map(|i| {
             let (value, gradient) = self.operands[i].gradient(p);
@@ -70,13 +68,15 @@ impl Bevel {
     /// Value and gradient.
     fn at(&self, p: DVec3) -> Sample {
         let here = self.samples(p);
-        match self.least(self.chamfer.height(here), here) {
-            (value, Some(which)) => (value, here[which].1),
-            (value, None) => {
+        let parts = Parts::of(here);
+        match (self.least(self.chamfer.height(parts.as_ref()), here), parts) {
+            ((value, Some(which)), _) => (value, here[which].1),
+            ((value, None), None) => (value, DVec3::ZERO),
+            ((value, None), Some(parts)) => {
                 let by = TURN * self.chamfer.leg;
-                let beside = self.chamfer.normals(here).map(|normal| self.samples(p + by * normal));
+                let beside = parts.normals.map(|normal| self.samples(p + by * normal));
                 let turn = |i: usize, j: usize| (beside[j][i].1 - here[i].1) / by;
-                (value, self.chamfer.slope(here, [0, 1].map(|i| [turn(i, 0), turn(i, 1)])))
+                (value, self.chamfer.slope(&parts, [0, 1].map(|i| [turn(i, 0), turn(i, 1)])))
             }
         }
     }
@@ -86,40 +86,58 @@ impl Bevel {
         height.min(values[0] + reach).min(values[1] + reach)
     }
 
+    /// What is known of T over a zone, by the operands' values there, and of their slopes and its
+    /// own over the hull.
+    fn face(&self, zone: &Zone, values: [Interval; 2]) -> Face {
+        let here = Jet::point(zone.hull());
+        let sides = [0, 1].map(|i| self.operands[i].evaluate(here, &mut Vec::new()) * self.signs[i]);
+        let slopes = self.chamfer.slopes(sides.each_ref());
+        let coarse = self.chamfer.range(values, sides.map(|side| side.d));
+        let centre = self.chamfer.height(Parts::of(self.samples(zone.centre)).as_ref());
+        let rounding = ROUNDING * (zone.reach() + self.chamfer.leg + centre.abs());
+        let height = mean_value_range(zone, Interval::around(centre, rounding), slopes, coarse);
+        Face { height, slopes, sides }
+    }
+
     /// Values and gradients of a chunk.
     fn chunk(&self, local: &Locals, is_steep: bool) -> Slopes {
         let tapes: [&Tape; 2] = self.operands.each_ref().map(Whole::tape);
         with_evaluator(|evaluator| {
             let mut sample = |at: &Locals| [0, 1].map(|i| at.gradients(evaluator, tapes[i]).times(self.signs[i]));
             let here = sample(local);
-            let (mut out, mut faces) = (Slopes::default(), Vec::new());
-            for i in 0..local.count {
+            let (mut out, mut faces) = (Slopes::new(local.count()), Vec::with_capacity(local.count()));
+            // Beside each point of the face, along the one normal and along the other.
+            let by = TURN_OF_LANES * self.chamfer.leg;
+            let mut near = Locals::with_capacity(2 * local.count());
+            for i in 0..local.count() {
                 let sides = here.each_ref().map(|side| side.at(i));
-                let (value, which) = self.least(self.chamfer.height(sides), sides);
+                let parts = Parts::of(sides);
+                let (value, which) = self.least(self.chamfer.height(parts.as_ref()), sides);
                 out.set(i, (value, which.map_or(DVec3::ZERO, |which| sides[which].1)));
-                faces.extend(which.is_none().then_some(i));
+                if let (true, None, Some(parts)) = (is_steep, which, parts) {
+                    faces.push((i, parts));
+                    parts.normals.into_iter().for_each(|normal| near.push(local.get(i) + by * normal));
+                }
             }
-            if faces.is_empty() || !is_steep {
+            if faces.is_empty() {
                 return out;
             }
-            let by = TURN_OF_LANES * self.chamfer.leg;
-            let beside = [0, 1].map(|side| {
-                let mut at = Locals { ..*local };
-                for &i in &faces {
-                    let normal = self.chamfer.normals(here.each_ref().map(|side| side.at(i)))[side];
-                    at.set(i, local.get(i) + by * normal);
-                }
-                sample(&at)
-            });
-            for i in faces {
-                let sides = here.each_ref().map(|side| side.at(i));
-                let turn = |k: usize, side: usize| (beside[side][k].at(i).1 - sides[k].1) / by;
-                let slope = self.chamfer.slope(sides, [0, 1].map(|k| [turn(k, 0), turn(k, 1)]));
+            let beside = sample(&near);
+            for (n, (i, parts)) in faces.into_iter().enumerate() {
+                let turn = |k: usize, side: usize| (beside[k].at(2 * n + side).1 - here[k].at(i).1) / by;
+                let slope = self.chamfer.slope(&parts, [0, 1].map(|k| [turn(k, 0), turn(k, 1)]));
                 out.set(i, (f64::from(out.value[i]), slope));
             }
             out
         })
     }
+}
+
+/// What is known over a zone: ranges of T, of its slopes, and of the operands.
+struct Face {
+    height: Interval,
+    slopes: [Interval; 3],
+    sides: [Jet; 2],
 }
 
 impl AnyField for Bevel {
@@ -145,7 +163,7 @@ impl AnyField for Bevel {
 
     fn value(&self, p: [f64; 3]) -> f64 {
         let here = self.samples(DVec3::from_array(p));
-        self.least(self.chamfer.height(here), here).0
+        self.least(self.chamfer.height(Parts::of(here).as_ref()), here).0
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
@@ -155,21 +173,11 @@ impl AnyField for Bevel {
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
-        let here = self.duals(Dual::point(p.map(Dual::value)));
-        let (values, gradients) = (here.map(Dual::value), here.map(Dual::gradient));
-        // Along the variables of p.
-        let sides = here.map(|Dual { v, d }| {
-            let along = |i: usize| d[0] * p[0].d[i] + d[1] * p[1].d[i] + d[2] * p[2].d[i];
-            Dual::new(v, [along(0), along(1), along(2)])
-        });
-        match self.chamfer.plane(sides, gradients) {
-            Some(plane) => {
-                let reach = Dual::constant(Interval::point(self.chamfer.reach()));
-                plane.min(sides[0] + reach).min(sides[1] + reach)
-            }
-            // How the operands bend is not known.
-            None => Dual::new(self.held(self.chamfer.range(values, gradients), values), [Interval::ALL; 3]),
-        }
+        let zone = Zone::of_sides(p.map(Dual::value));
+        let Face { height, slopes, sides } = self.face(&zone, self.ranges(&zone));
+        let [x, y] = sides.map(|side| chained(side.v, side.d, p));
+        let reach = Dual::constant(Interval::point(self.chamfer.reach()));
+        chained(height, slopes, p).min(x + reach).min(y + reach)
     }
 
     fn convex(&self) -> bool {
@@ -182,8 +190,7 @@ impl AnyField for Bevel {
         if far.hi() < 0.0 {
             return Interval::new(-VALUE_LIMIT, far.hi());
         }
-        let gradients = self.duals(Dual::point(zone.hull())).map(Dual::gradient);
-        self.held(self.chamfer.range(values, gradients), values)
+        self.held(self.face(zone, values).height, values)
     }
 
     /// What a plane takes turns round nowhere but where the operands do, in zones that are small
@@ -247,5 +254,62 @@ impl AnyField for Bevel {
 
     fn jumps(&self) -> bool {
         self.operands.iter().any(|operand| operand.jumps())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Solid;
+
+    /// The leaf changes by no more than its slopes say, and they are known beside its rims.
+    #[test]
+    fn slopes_of_faces_hold_all_changes() {
+        let random = |n: u32| {
+            f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11).wrapping_mul(2_246_822_519)) / 2f64.powi(32)
+        };
+        let vector = |n: u32| DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2)) * 2.0 - 1.0;
+        let plate = Solid::cuboid([2.0, 2.0, 0.4]);
+        let posts = [
+            Solid::superellipsoid([0.5, 0.5, 1.0], 0.3, 0.7),
+            Solid::cylinder(0.5, 2.0).rotate_x(crate::rad(0.4)),
+            Solid::torus(0.5, 0.3),
+            Solid::cuboid([0.7, 0.5, 1.0]).twist(crate::rad(0.5)),
+        ];
+        let leg = 0.15;
+        for (number, post) in posts.into_iter().enumerate() {
+            for signs in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]] {
+                let operands = [&plate, &post].map(|solid| solid.surface_program().expect("the solid is valid"));
+                let bevel = Bevel::new(operands, signs, Chamfer { leg, steepest: 1.0 }, Bounds::ALL);
+                let (mut told, mut near) = (0, 0);
+                for n in 0..800 {
+                    let centre = DVec3::new(0.8, 0.8, 0.5) * vector(40 * n);
+                    let half = (0.1 + random(n)) * 0.02;
+                    if bevel.samples(centre).iter().any(|(value, _)| value.abs() > leg) {
+                        continue;
+                    }
+                    near += 1;
+                    let zone = Zone::of_sides([0, 1, 2].map(|axis| Interval::around(centre[axis], half)));
+                    let (range, dual) = (bevel.range(&zone), bevel.dual_range(Dual::point(zone.hull())));
+                    told += u32::from(dual.d.iter().all(|slope| slope.width() < 1.0));
+                    for pair in 1..8 {
+                        let [p, q] = [2 * pair, 2 * pair + 1].map(|m| centre + half * vector(40 * n + m));
+                        let [v, w] = [p, q].map(|p| bevel.value(p.to_array()));
+                        let slack = 1e-9 * (1.0 + v.abs() + w.abs());
+                        for range in [range, dual.v] {
+                            assert!(range.lo() - slack <= v && v <= range.hi() + slack, "{number}: {v} {range:?} {p}");
+                        }
+                        let terms = [0, 1, 2].map(|axis| dual.d[axis].times(Interval::point(q[axis] - p[axis])));
+                        let change = terms[0] + terms[1] + terms[2];
+                        assert!(
+                            change.lo() - slack <= w - v && w - v <= change.hi() + slack,
+                            "{number} {signs:?}: {} from {p} to {q}, {change:?}",
+                            w - v
+                        );
+                    }
+                }
+                assert!(told * 2 > near && near > 30, "{number} {signs:?}: {told} of {near}");
+            }
+        }
     }
 }

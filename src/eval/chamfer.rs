@@ -22,11 +22,23 @@
 //! all where they meet at a right angle throughout, as the caps of an extrusion do. There is
 //! nothing to search for, so T goes on steadily wherever the gradients do. Operands that face each
 //! other closer than 0.28 l are bridged.
+//!
+//! With n and o the unit gradients, and A and B the matrices of the operands' second derivatives, each
+//! divided by the length of its gradient,
+//!
+//! ```text
+//!     ∇X = n − X·A n      ∇c = A (o − c n) + B (n − c o)
+//!     ∇T = (∇X + ∇Y)/m − (l/(4k) + (X + Y)/m³) ∇c
+//! ```
+//!
+//! so ranges of first and second derivatives over a box ([`Jet`]) bound the slopes of T in it: rays
+//! go from there by Newton's method, and boxes that the face does not cross are told by the value in
+//! their middle and those slopes.
 
 use glam::DVec3;
 
 use super::bevel::Sample;
-use crate::{Dual, Interval, Real};
+use crate::{Interval, Jet, Real};
 use rvachev_field::VALUE_LIMIT;
 
 /// At edges sharper than this (16°) the face stays as it is there.
@@ -34,9 +46,6 @@ const SHARPEST: f64 = -0.96;
 
 /// Gradients shorter than this tell no direction.
 const LEVEL: f64 = 1e-12;
-
-/// Where the gradients change by less, the operands are planes.
-const FLAT: f64 = 1e-9;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chamfer {
@@ -47,9 +56,10 @@ pub(super) struct Chamfer {
 }
 
 /// What the face's height is made of.
-struct Parts {
+#[derive(Clone, Copy)]
+pub(super) struct Parts {
     /// Unit gradients, and their lengths before.
-    normals: [DVec3; 2],
+    pub(super) normals: [DVec3; 2],
     lengths: [f64; 2],
     /// X and Y.
     distances: [f64; 2],
@@ -57,7 +67,8 @@ struct Parts {
 }
 
 impl Parts {
-    fn of(sides: [Sample; 2]) -> Option<Parts> {
+    /// None where an operand has no slope.
+    pub(super) fn of(sides: [Sample; 2]) -> Option<Parts> {
         let lengths = sides.map(|(_, gradient)| gradient.length());
         if lengths.iter().any(|&length| length.is_nan() || length < LEVEL) {
             return None;
@@ -81,21 +92,16 @@ impl Chamfer {
     }
 
     /// The value T; below all others where an operand has no slope.
-    pub(super) fn height(self, sides: [Sample; 2]) -> f64 {
-        let Some(parts) = Parts::of(sides) else { return f64::NEG_INFINITY };
+    pub(super) fn height(self, parts: Option<&Parts>) -> f64 {
+        let Some(parts) = parts else { return f64::NEG_INFINITY };
         let (k, m) = factors(parts.cosine);
         ((parts.distances[0] + parts.distances[1]) / m + self.leg * k).min(VALUE_LIMIT)
     }
 
-    /// The unit gradients of the operands, along which [`slope`](Self::slope) asks for changes.
-    pub(super) fn normals(self, sides: [Sample; 2]) -> [DVec3; 2] {
-        sides.map(|(_, gradient)| gradient.normalize_or_zero())
-    }
-
     /// The gradient of T; `turns[i][j]` is the derivative of operand i's gradient along the unit
     /// gradient of operand j.
-    pub(super) fn slope(self, sides: [Sample; 2], turns: [[DVec3; 2]; 2]) -> DVec3 {
-        let Some(Parts { normals, lengths, distances, cosine }) = Parts::of(sides) else { return DVec3::ZERO };
+    pub(super) fn slope(self, parts: &Parts, turns: [[DVec3; 2]; 2]) -> DVec3 {
+        let Parts { normals, lengths, distances, cosine } = *parts;
         let (k, m) = factors(cosine);
         let turns = [0, 1].map(|i| turns[i].map(|turn| turn / lengths[i]));
         let steady = cosine <= SHARPEST || k < 1e-6;
@@ -115,9 +121,8 @@ impl Chamfer {
         if !lengths.iter().all(|length| length.lo() >= LEVEL) {
             return everything;
         }
-        let normals = [0, 1].map(|i| gradients[i].map(|d| (d / lengths[i]).narrowed_by(Interval::new(-1.0, 1.0))));
-        let [n, o] = normals;
-        let cosine = n[0] * o[0] + n[1] * o[1] + n[2] * o[2];
+        let [n, o] = normals(gradients, lengths);
+        let cosine = dot(n, o);
         let (most, short) = factors(cosine.lo().clamp(SHARPEST, 1.0));
         let (least, long) = factors(cosine.hi().clamp(SHARPEST, 1.0));
         let sum = values[0] / lengths[0] + values[1] / lengths[1];
@@ -125,18 +130,43 @@ impl Chamfer {
         height.narrowed_by(everything)
     }
 
-    /// T and its slopes along the variables of `sides` where the operands are planes.
-    pub(super) fn plane(self, sides: [Dual<Interval>; 2], gradients: [[Interval; 3]; 2]) -> Option<Dual<Interval>> {
-        if !gradients.iter().flatten().all(|side| side.width() <= FLAT) {
-            return None;
+    /// Ranges of the gradient of T, as [`slope`](Self::slope) has it; without bound where the
+    /// operands' normals may turn without.
+    pub(super) fn slopes(self, sides: [&Jet; 2]) -> [Interval; 3] {
+        let lengths = sides.map(|side| length(side.d));
+        if !lengths.iter().all(|length| length.lo() >= LEVEL) {
+            return [Interval::ALL; 3];
         }
-        let Parts { lengths, cosine, .. } =
-            Parts::of(gradients.map(|gradient| (0.0, DVec3::from_array(gradient.map(Interval::mid)))))?;
-        let (k, m) = factors(cosine);
-        let lifted = |c: f64| Dual::constant(Interval::point(c));
-        let [x, y] = [0, 1].map(|i| sides[i] * lifted(1.0 / (lengths[i] * m)));
-        Some(x + y + lifted(self.leg * k))
+        let normals = normals(sides.map(|side| side.d), lengths);
+        let cosine = dot(normals[0], normals[1]);
+        let [least, most] = [cosine.lo(), cosine.hi()].map(|cosine| factors(cosine.clamp(SHARPEST, 1.0)));
+        let (k, m) = (Interval::new(most.0, least.0), Interval::new(least.1, most.1));
+        let distances = [0, 1].map(|i| sides[i].v / lengths[i]);
+        // How the unit gradients turn along themselves, and their cosine all about.
+        let (mut own, mut turning) = ([[Interval::ZERO; 3]; 2], [Interval::ZERO; 3]);
+        for i in 0..2 {
+            let turn = sides[i].turn(normals[i]);
+            let other = sides[i].turn([0, 1, 2].map(|axis| normals[1 - i][axis] - cosine * normals[i][axis]));
+            for axis in 0..3 {
+                own[i][axis] = normals[i][axis] - distances[i].times(turn[axis] / lengths[i]);
+                turning[axis] = turning[axis] + other[axis] / lengths[i];
+            }
+        }
+        let sum = (distances[0] + distances[1]) / m;
+        let along = -(Interval::point(0.25 * self.leg) / k) - sum / m.square();
+        // At sharper edges the face is as it is there.
+        let along = if cosine.lo() > SHARPEST { along } else { along.hull(Interval::ZERO) };
+        [0, 1, 2].map(|axis| (own[0][axis] + own[1][axis]) / m + along.times(turning[axis]))
     }
+}
+
+/// Unit vectors along two that are so long.
+fn normals(vectors: [[Interval; 3]; 2], lengths: [Interval; 2]) -> [[Interval; 3]; 2] {
+    [0, 1].map(|i| vectors[i].map(|d| (d / lengths[i]).narrowed_by(Interval::new(-1.0, 1.0))))
+}
+
+fn dot(a: [Interval; 3], b: [Interval; 3]) -> Interval {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The length of a vector.

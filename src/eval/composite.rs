@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{DAffine3, DVec3};
 
 use super::{Evaluator, Gradients, Program, Tape};
-use crate::{Bounds, Dual, Interval, ParamError};
+use crate::{Bounds, Dual, Interval, Jet, ParamError};
 use rvachev_field::kernel::CHUNK;
 use rvachev_field::{AnyField, Chunk, Placement, Way, Zone};
 use rvachev_num::symbol::Symbol;
@@ -80,6 +80,10 @@ impl AnyField for Composite {
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        self.program.evaluate(p, &mut Vec::new())
+    }
+
+    fn jet(&self, p: [Jet; 3]) -> Jet {
         self.program.evaluate(p, &mut Vec::new())
     }
 
@@ -174,25 +178,22 @@ pub(super) fn with_evaluator<T>(work: impl FnOnce(&mut Evaluator) -> T) -> T {
 
 /// A chunk's points in a leaf's own coordinates.
 pub(super) struct Locals {
-    pub(super) at: [[f32; CHUNK]; 3],
-    /// How many of them count.
-    pub(super) count: usize,
+    at: [Vec<f32>; 3],
 }
 
 /// Values and gradients of a chunk.
-#[derive(Clone)]
 pub(super) struct Slopes {
-    pub(super) value: [f32; CHUNK],
-    pub(super) gradient: [[f32; CHUNK]; 3],
-}
-
-impl Default for Slopes {
-    fn default() -> Slopes {
-        Slopes { value: [0.0; CHUNK], gradient: [[0.0; CHUNK]; 3] }
-    }
+    pub(super) value: Vec<f32>,
+    pub(super) gradient: [Vec<f32>; 3],
 }
 
 impl Slopes {
+    /// So many, all 0.
+    pub(super) fn new(count: usize) -> Slopes {
+        Slopes { value: vec![0.0; count], gradient: [(); 3].map(|()| vec![0.0; count]) }
+    }
+
+    #[inline(always)]
     pub(super) fn at(&self, i: usize) -> (f64, DVec3) {
         let [x, y, z] = &self.gradient;
         (f64::from(self.value[i]), DVec3::new(f64::from(x[i]), f64::from(y[i]), f64::from(z[i])))
@@ -200,8 +201,10 @@ impl Slopes {
 
     /// Those of a multiple.
     pub(super) fn times(mut self, factor: f64) -> Slopes {
-        for list in [&mut self.value].into_iter().chain(&mut self.gradient) {
-            list.iter_mut().for_each(|v| *v *= factor as f32);
+        if factor != 1.0 {
+            for list in [&mut self.value].into_iter().chain(&mut self.gradient) {
+                list.iter_mut().for_each(|v| *v *= factor as f32);
+            }
         }
         self
     }
@@ -217,25 +220,34 @@ impl Slopes {
 impl Locals {
     pub(super) fn of(points: &[&[f32]; 3], placement: &Placement) -> Locals {
         let [xs, ys, zs] = points;
-        let mut locals = Locals { at: [[0.0; CHUNK]; 3], count: xs.len() };
-        for (i, ((x, y), z)) in xs.iter().zip(*ys).zip(*zs).enumerate() {
+        let mut locals = Locals::with_capacity(xs.len());
+        for ((x, y), z) in xs.iter().zip(*ys).zip(*zs) {
             let p = placement.apply([f64::from(*x), f64::from(*y), f64::from(*z)]);
-            locals.set(i, DVec3::from_array(p));
+            locals.push(DVec3::from_array(p));
         }
         locals
     }
 
+    pub(super) fn with_capacity(count: usize) -> Locals {
+        Locals { at: [(); 3].map(|()| Vec::with_capacity(count)) }
+    }
+
     fn coordinates(&self) -> [&[f32]; 3] {
-        self.at.each_ref().map(|axis| &axis[..self.count])
+        self.at.each_ref().map(Vec::as_slice)
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.at[0].len()
     }
 
     pub(super) fn get(&self, i: usize) -> DVec3 {
-        DVec3::from_array([0, 1, 2].map(|axis| f64::from(self.at[axis][i])))
+        DVec3::new(f64::from(self.at[0][i]), f64::from(self.at[1][i]), f64::from(self.at[2][i]))
     }
 
-    pub(super) fn set(&mut self, i: usize, p: DVec3) {
-        for axis in 0..3 {
-            self.at[axis][i] = p[axis] as f32;
+    pub(super) fn push(&mut self, p: DVec3) {
+        for (axis, list) in self.at.iter_mut().enumerate() {
+            list.push(p[axis] as f32);
         }
     }
 
@@ -245,7 +257,7 @@ impl Locals {
     }
 
     pub(super) fn gradients(&self, evaluator: &mut Evaluator, tape: &Tape) -> Slopes {
-        let mut slopes = Slopes::default();
+        let mut slopes = Slopes::new(self.count());
         let Slopes { value, gradient: [dx, dy, dz] } = &mut slopes;
         let [x, y, z] = self.coordinates();
         evaluator.shortest_gradients(tape, [x, y, z], Gradients { value, dx, dy, dz });

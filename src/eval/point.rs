@@ -169,3 +169,66 @@ impl Program {
 pub(crate) fn limited(p: DVec3) -> [f64; 3] {
     p.to_array().map(|c| c.clamp(-COORDINATE_LIMIT, COORDINATE_LIMIT))
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use crate::catalogue::{Part, catalogue};
+    use crate::{Interval, Jet};
+
+    /// A number from 0 to 1.
+    fn random(n: u32) -> f64 {
+        f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11).wrapping_mul(2_246_822_519)) / 2f64.powi(32)
+    }
+
+    fn vector(n: u32) -> DVec3 {
+        DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2)) * 2.0 - 1.0
+    }
+
+    /// Between any two points of a box the gradient changes by no more than second derivatives say,
+    /// of everything in the catalogue.
+    #[test]
+    fn gradients_turn_within_what_jets_tell() {
+        let (mut told, mut asked) = (0, 0);
+        for (number, entry) in (0u32..).zip(catalogue()) {
+            let solid = match entry.example() {
+                Part::Solid(solid) => solid,
+                Part::Profile(profile) => profile.extrude(0.5),
+                _ => continue,
+            };
+            let size = solid.bounds().ok().filter(|bounds| bounds.is_finite());
+            let size = size.map_or(2.0, |bounds| bounds.longest_side());
+            let program = solid.field_program().expect("the example is valid");
+            let mut known = 0;
+            for n in 0..120 {
+                let at = |m: u32| vector(m + 1000 * number + 40 * n);
+                let (centre, half) = (0.6 * size * at(0), (0.01 + random(n)) * 0.05 * size);
+                let sides = [0, 1, 2].map(|axis| Interval::around(centre[axis], half));
+                let jet = program.evaluate(Jet::point(sides), &mut Vec::new());
+                let turns = |way: DVec3| jet.turn(way.to_array().map(Interval::point));
+                known += u32::from(turns(DVec3::ONE).iter().all(|turn| turn.width().is_finite()));
+                for pair in 0..6 {
+                    let [p, q] = [1, 2].map(|k| centre + half * at(2 * pair + k));
+                    let (from, to) = (program.gradient(p), program.gradient(q));
+                    let bounds = turns(q - p);
+                    for (axis, turn) in bounds.into_iter().enumerate() {
+                        let change = to.1[axis] - from.1[axis];
+                        let slack = 1e-7 * (1.0 + from.1[axis].abs() + to.1[axis].abs());
+                        assert!(
+                            change >= turn.lo() - slack && change <= turn.hi() + slack,
+                            "{}: {change} along {axis} from {p} to {q}, {turn:?}",
+                            entry.name()
+                        );
+                        let slope = jet.d[axis];
+                        let is_slope = slope.lo() - slack <= to.1[axis] && to.1[axis] <= slope.hi() + slack;
+                        assert!(is_slope, "{}: {} along {axis} at {q}, {slope:?}", entry.name(), to.1[axis]);
+                    }
+                }
+            }
+            asked += 1;
+            told += u32::from(known > 30);
+        }
+        assert!(told * 3 > asked * 2, "{told} of {asked}");
+    }
+}

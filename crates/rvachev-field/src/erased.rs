@@ -13,7 +13,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::outlined::{Outlined, zone_range, zone_rises};
 use super::{Along, Case, Crease, Field, Kernel, ParamError, Placement, Segment, Way, Zone, bits, steepest};
 use crate::kernel::{Element, Formula, Visit, run};
-use crate::{Bounds, Dual, Interval, Real};
+use crate::{Bounds, Dual, Interval, Jet, Real};
 use rvachev_num::symbol::Symbol;
 use rvachev_num::{Cancelled, Run};
 
@@ -71,6 +71,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64>;
     /// Ranges of value and derivatives over a box.
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
+    /// The same with ranges of second derivatives; without bound where nothing is known.
+    fn jet(&self, p: [Jet; 3]) -> Jet {
+        Jet::unbounded(self.dual_range(p.map(|side| side.dual())))
+    }
     /// Ranges of the derivatives over the part of a box beside the planes of
     /// [`creases`](AnyField::creases), on the side of each of them that a point is on.
     fn slopes_beside(&self, p: [Dual<Interval>; 3], _beside: DVec3) -> [Interval; 3] {
@@ -420,6 +424,10 @@ impl<F: Field> AnyField for F {
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
         Field::dual_range(self, p)
+    }
+
+    fn jet(&self, p: [Jet; 3]) -> Jet {
+        Field::jet(self, p)
     }
 
     fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::deform::{Branches, Warp};
 use crate::kernel::{Formula, run};
-use crate::{AnyWarp, Bounds, Chunk, Dual, Interval, ParamError, Placement, Real};
+use crate::{AnyWarp, Bounds, Chunk, Dual, Interval, Jet, ParamError, Placement, Real};
 use rvachev_num::symbol::Symbol;
 
 struct PreImage<'a, W>(&'a W, &'a Placement);
@@ -57,6 +57,11 @@ impl<W: Warp> AnyWarp for W {
     #[inline(never)]
     fn dual_ranges(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3] {
         self.slopes(p)
+    }
+
+    #[inline(never)]
+    fn jets(&self, p: [Jet; 3]) -> [Jet; 3] {
+        self.inverse(p)
     }
 
     fn symbols<'a>(&self, p: [Symbol<'a>; 3]) -> [Symbol<'a>; 3] {

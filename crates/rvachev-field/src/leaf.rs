@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec3};
 use super::erased::reach;
 use super::outlined::Outlined;
 use super::{Along, ParamError, Segment};
-use crate::{Bounds, Dual, Interval, Real};
+use crate::{Bounds, Dual, Interval, Jet, Real};
 use rvachev_num::{Cancelled, Run};
 
 /// A leaf: a formula that is positive inside a shape, zero on its surface and negative
@@ -149,6 +149,13 @@ pub trait Field: Debug + Send + Sync + 'static {
     /// [`chained`](crate::chained).
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
         self.dual_over(p)
+    }
+
+    /// Ranges of the value, of its derivatives and of theirs, over a box whose sides are given with
+    /// derivatives of their own: how much normals turn in it, which chamfers between leaves ask. The
+    /// default runs the formula on these numbers.
+    fn jet(&self, p: [Jet; 3]) -> Jet {
+        self.jet_over(p)
     }
 
     /// Normals of the planes through the origin of the leaf's frame at which slopes are without

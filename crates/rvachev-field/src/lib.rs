@@ -59,7 +59,9 @@ mod sweep;
 mod tangents;
 mod zone;
 
-use rvachev_num::{Angle, Bounds, Dual, Euclid, Interval, Monotone, Monotone3, Norm, NormKind, OfOne, Powers, Real};
+use rvachev_num::{
+    Angle, Bounds, Dual, Euclid, Interval, Jet, Monotone, Monotone3, Norm, NormKind, OfOne, Powers, Real,
+};
 
 pub use blend::Blend;
 pub use blend::RicciSide;
@@ -112,7 +114,7 @@ pub use supertoroid::Supertoroid;
 pub use sweep::{Caps, HelixWarp, Opening, Revolution, Span, Turn};
 pub use torus::Torus;
 pub use wedge::Wedge;
-pub use zone::{Pieces, Way, Zone, bits, dot, largest_stretch, steepest};
+pub use zone::{Pieces, Way, Zone, bits, dot, largest_stretch, mean_value_range, steepest};
 
 /// Coordinates beyond this many length units are evaluated as if they lay there, so that no
 /// intermediate result overflows single precision.

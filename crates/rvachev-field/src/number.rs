@@ -5,7 +5,7 @@
 
 use rvachev_num::symbol::Symbol;
 
-use crate::{AnyField, AnyWarp, Dual, Interval, Op, Real, Rule};
+use crate::{AnyField, AnyWarp, Dual, Interval, Jet, Op, Real, Rule};
 
 /// A number that joins take.
 pub trait Joined: Real {
@@ -34,7 +34,7 @@ macro_rules! joined {
     )*};
 }
 
-joined!(f64, Interval, Dual<f64>, Dual<Interval>);
+joined!(f64, Interval, Dual<f64>, Dual<Interval>, Jet);
 joined!(Symbol<'_>);
 
 impl Rule {
@@ -81,6 +81,15 @@ impl Number for Dual<Interval> {
     }
     fn warp(warp: &dyn AnyWarp, p: [Self; 3]) -> [Self; 3] {
         warp.dual_ranges(p)
+    }
+}
+
+impl Number for Jet {
+    fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self {
+        field.jet(p)
+    }
+    fn warp(warp: &dyn AnyWarp, p: [Self; 3]) -> [Self; 3] {
+        warp.jets(p)
     }
 }
 

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::zone::{concave_range, concave_rise, mean_value_range};
 use super::{Field, Way, Zone, bits};
-use crate::{Dual, Interval};
+use crate::{Dual, Interval, Jet};
 
 /// A leaf by its formula, behind a pointer.
 pub trait Outlined {
@@ -21,6 +21,8 @@ pub trait Outlined {
     fn over(&self, p: [Interval; 3]) -> Interval;
     /// With its derivatives.
     fn dual_over(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
+    /// And with theirs.
+    fn jet_over(&self, p: [Jet; 3]) -> Jet;
     /// What the leaf says of its derivatives over a box of its frame.
     fn box_slopes(&self, region: [Interval; 3]) -> [Interval; 3];
     /// Whether it is concave, with slope at most 1.
@@ -45,6 +47,11 @@ impl<F: Field + ?Sized> Outlined for F {
 
     #[inline(never)]
     fn dual_over(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        self.eval(p)
+    }
+
+    #[inline(never)]
+    fn jet_over(&self, p: [Jet; 3]) -> Jet {
         self.eval(p)
     }
 

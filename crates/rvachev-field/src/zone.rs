@@ -293,7 +293,7 @@ pub fn dot(a: [Interval; 3], b: [Interval; 3]) -> Interval {
 
 /// Range of a function over a zone by the mean-value form: the value at the centre and ranges
 /// of the derivatives over the hull, along the zone's own axes.
-pub(super) fn mean_value_range(zone: &Zone, centre: Interval, slopes: [Interval; 3], known: Interval) -> Interval {
+pub fn mean_value_range(zone: &Zone, centre: Interval, slopes: [Interval; 3], known: Interval) -> Interval {
     let along = |axis: DVec3| {
         let terms = [0, 1, 2].map(|i| slopes[i] * axis[i]);
         (terms[0] + terms[1] + terms[2]).magnitude()

@@ -7,6 +7,7 @@
 //! | `f64` | the reference value |
 //! | [`Interval`] | a sound range over a box |
 //! | [`Dual`] over any of them | value and gradient |
+//! | [`Jet`] | ranges of a value and of its first and second derivatives |
 //! | SIMD lanes of `f32` and `f64` | values and gradients in bulk |
 //! | [`Symbol`](symbol::Symbol) | an expression tree for fidget |
 
@@ -17,6 +18,7 @@ mod dual;
 mod figures;
 mod float;
 mod interval;
+mod jet;
 pub mod lanes;
 mod monotone;
 mod norm;
@@ -32,6 +34,7 @@ pub use bounds::{Bounds, column_times};
 pub use dual::Dual;
 pub use figures::{figures, figures_beside};
 pub use interval::Interval;
+pub use jet::Jet;
 pub use monotone::{Monotone, Monotone3, OfOne};
 pub use norm::{Euclid, Norm, NormKind, Powers};
 pub use real::Real;

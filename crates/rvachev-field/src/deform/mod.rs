@@ -24,7 +24,7 @@ use std::fmt::Debug;
 use glam::{DAffine3, DVec3};
 
 use super::{Chunk, ParamError};
-use crate::{Bounds, Dual, Euclid, Interval, Real};
+use crate::{Bounds, Dual, Euclid, Interval, Jet, Real};
 use rvachev_num::symbol::Symbol;
 
 pub use bend::Bend;
@@ -123,6 +123,8 @@ pub trait AnyWarp: Any + Debug + Send + Sync {
     fn duals(&self, p: [Dual<f64>; 3]) -> [Dual<f64>; 3];
     /// Ranges of the pre-image and of its derivatives.
     fn dual_ranges(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3];
+    /// The same, and of their derivatives.
+    fn jets(&self, p: [Jet; 3]) -> [Jet; 3];
     /// The pre-image as expression trees.
     fn symbols<'a>(&self, p: [Symbol<'a>; 3]) -> [Symbol<'a>; 3];
     /// Pre-images of a chunk, on lanes of `f32`.
