@@ -11,40 +11,73 @@
 //!     | .-'   -     |
 //! ```
 
+use std::cell::RefCell;
+
 use glam::DVec3;
 
 use super::program::{Kind, Node, Program};
 use super::scene::Instance;
 use crate::{Bounds, Dual, Interval};
-use rvachev_field::{Along, Crease, Number, Rule, Segment, Zone};
+use rvachev_field::{Along, Crease, Rule, Segment, Zone};
 
-impl Program {
-    /// A range of the slopes that leaves have where they change their signs, along rays in a box
-    /// with directions in `along`: 0 if there are none. Where all
+/// Slopes along the rays in a box with directions in `along`. What is asked of a leaf for the one
+/// question is kept for the other.
+pub(crate) struct RaySlopes<'a> {
+    program: &'a Program,
+    bounds: &'a Bounds,
+    along: [Interval; 3],
+    told: RefCell<Vec<(u32, Dual<Interval>)>>,
+}
+
+impl RaySlopes<'_> {
+    /// The value of a leaf that is not deformed, and its slopes.
+    fn leaf(&self, leaf: u32) -> Dual<Interval> {
+        let known = self.told.borrow().iter().find(|(number, _)| *number == leaf).map(|(_, dual)| *dual);
+        known.unwrap_or_else(|| {
+            let dual = self.program.leaf(leaf, sides(self.bounds, self.along));
+            self.told.borrow_mut().push((leaf, dual));
+            dual
+        })
+    }
+
+    /// Those of the value.
+    pub(crate) fn value(&self) -> Interval {
+        let RaySlopes { program, bounds, along, .. } = *self;
+        let value = match program.is_deformed() {
+            true => program.evaluate(sides(bounds, along), &mut Vec::new()),
+            false => program.evaluate_leaves(|leaf| self.leaf(leaf), &mut Vec::new()),
+        };
+        value.gradient()[0]
+    }
+
+    /// Those that leaves have where they change their signs: 0 if there are none. Where all
     /// are at least 0, a ray goes inside at most once and does not come out; where all are at most
     /// 0, it does not go inside. `None` where the sign is not that of leaves, and where leaves are
     /// deformed: there it costs more than it tells.
-    pub(crate) fn crossing_slopes(&self, bounds: &Bounds, along: [Interval; 3]) -> Option<Interval> {
-        if !self.frames.is_empty() {
+    pub(crate) fn crossing(&self) -> Option<Interval> {
+        let RaySlopes { program, bounds, along, .. } = *self;
+        if program.is_deformed() {
             return None;
         }
-        let mut ways = vec![[false; 2]; self.nodes.len()];
-        ways[self.root.node()][usize::from(self.root.negated())] = true;
+        let mut ways = vec![[false; 2]; program.nodes.len()];
+        ways[program.root.node()][usize::from(program.root.negated())] = true;
         let mut slopes: Option<Interval> = None;
-        for (at, node) in self.nodes.iter().enumerate().rev() {
+        for (at, node) in program.nodes.iter().enumerate().rev() {
             let [plain, negated] = ways[at];
             if !(plain || negated) {
                 continue;
             }
             match &node.kind {
                 Kind::Leaf(leaf) => {
-                    let Some(slope) = self.crossing(*leaf, bounds, along, PARTS) else { continue };
+                    let Some(slope) = program.crossing(*leaf, self.leaf(*leaf), (bounds, along), PARTS) else {
+                        continue;
+                    };
                     for slope in [plain.then_some(slope), negated.then_some(-slope)].into_iter().flatten() {
                         slopes = Some(slopes.map_or(slope, |slopes| slopes.hull(slope)));
                     }
                 }
                 Kind::Join { rule: Rule::MinMax, .. } => {
-                    for edge in self.list(node) {
+                    for edge in program.list(node) {
                         let way = &mut ways[edge.node()];
                         way[usize::from(edge.negated())] |= plain;
                         way[usize::from(!edge.negated())] |= negated;
@@ -53,7 +86,14 @@ impl Program {
                 Kind::Join { .. } | Kind::Shift(_) => return None,
             }
         }
-        Some(slopes.unwrap_or(Interval::point(0.0)))
+        Some(slopes.unwrap_or(Interval::ZERO))
+    }
+}
+
+impl Program {
+    /// The slopes along rays in a box with directions in `along`.
+    pub(crate) fn ray_slopes<'a>(&'a self, bounds: &'a Bounds, along: [Interval; 3]) -> RaySlopes<'a> {
+        RaySlopes { program: self, bounds, along, told: RefCell::new(Vec::new()) }
     }
 
     /// What is known of the value along a segment.
@@ -114,17 +154,21 @@ impl Program {
         self.evaluate_leaves(leaf, &mut Vec::new()).gradient()[0]
     }
 
-    /// The slopes of a leaf where it is 0; those in the parts of the box that it crosses, one
-    /// behind the other, if they are not of one sign (and the leaf costs little).
-    fn crossing(&self, leaf: u32, bounds: &Bounds, along: [Interval; 3], parts: u32) -> Option<Interval> {
-        let instance = self.instance(leaf);
-        let p = instance.placement.apply(sides(bounds, along));
-        let value = instance.placement.finish(Dual::<Interval>::leaf(&*instance.field, p));
-        if !value.value().contains(0.0) {
+    /// The slopes of a leaf where it is 0, by what is known of it in the box; those in the parts of
+    /// the box that it crosses, one behind the other, if they are not of one sign (and the leaf
+    /// costs little).
+    fn crossing(
+        &self,
+        leaf: u32,
+        known: Dual<Interval>,
+        (bounds, along): (&Bounds, [Interval; 3]),
+        parts: u32,
+    ) -> Option<Interval> {
+        if !known.value().contains(0.0) {
             return None;
         }
-        let slope = value.gradient()[0];
-        let is_dear = instance.field.cost() > 1;
+        let slope = known.gradient()[0];
+        let is_dear = self.instance(leaf).field.cost() > 1;
         if parts == 0 || is_dear || slope.lo() >= 0.0 || slope.hi() <= 0.0 {
             return Some(slope);
         }
@@ -132,7 +176,10 @@ impl Program {
         let (mut near, mut far) = (*bounds, *bounds);
         near.max[axis] = bounds.center()[axis];
         far.min[axis] = near.max[axis];
-        let slopes = [near, far].map(|part| self.crossing(leaf, &part, along, parts - 1));
+        let slopes = [near, far].map(|part| {
+            let known = self.leaf(leaf, sides(&part, along));
+            self.crossing(leaf, known, (&part, along), parts - 1)
+        });
         slopes.into_iter().flatten().reduce(Interval::hull)
     }
 }
@@ -185,7 +232,7 @@ mod tests {
             let Region::Surface(program) = program.narrow(&bounds) else { continue };
             let direction = vector(3 * n + 2).normalize();
             let along = direction.to_array().map(|d| Interval::new(d - 0.05, d + 0.05));
-            let slopes = program.crossing_slopes(&bounds, along).expect("its sign is that of leaves");
+            let slopes = program.ray_slopes(&bounds, along).crossing().expect("its sign is that of leaves");
             // Give or take 0 rounded outwards.
             let (rises, falls) = (slopes.lo() > -1e-14, slopes.hi() < 1e-14);
             rising += u32::from(rises);

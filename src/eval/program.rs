@@ -208,6 +208,18 @@ impl Program {
         self.nodes.iter().filter_map(Node::valued_by).all(|leaf| self.instance(leaf).field.is_steady())
     }
 
+    /// Whether what takes long of it is searched for.
+    pub(crate) fn is_searched(&self) -> bool {
+        let dear = self.nodes.iter().filter_map(Node::valued_by).map(|leaf| &self.instance(leaf).field);
+        let mut dear = dear.filter(|field| field.cost() > 1).peekable();
+        dear.peek().is_some() && dear.all(|field| !field.is_steady())
+    }
+
+    /// Whether each of its leaves takes long.
+    pub(crate) fn is_dear(&self) -> bool {
+        self.nodes.iter().filter_map(Node::valued_by).all(|leaf| self.instance(leaf).field.cost() > 1)
+    }
+
     /// Whether any of its leaves goes on in another one.
     pub(crate) fn jumps(&self) -> bool {
         self.nodes.iter().filter_map(Node::valued_by).any(|leaf| self.leaf_jumps(leaf))

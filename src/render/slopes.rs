@@ -15,7 +15,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::eval::{Crease, Program};
-use crate::{Bounds, Dual, Interval};
+use crate::{Bounds, Interval};
 
 /// Slopes of the value along rays.
 #[derive(Clone, Copy, Debug)]
@@ -82,18 +82,18 @@ impl Known {
             let sides = (!rises && !falls).then(|| Arc::new(sides));
             return Known { slopes: Slopes { rises, falls, ..Slopes::ANY }, sides };
         }
-        let crossing = program.crossing_slopes(room, along).map(|slopes| Slopes::of(slopes, slopes.magnitude()));
+        let along = program.ray_slopes(room, along);
+        let crossing = along.crossing().map(|slopes| Slopes::of(slopes, slopes.magnitude()));
         if let Some(Slopes { rises, falls, .. }) = crossing.filter(|slopes| slopes.are_one_way()) {
             // How steep it is does not matter then.
             return Known { slopes: Slopes { rises, falls, ..Slopes::ANY }, sides: None };
         }
-        // One leaf that takes long has told its slopes all over the box.
-        if let Some(slopes) = crossing.filter(|_| program.leaf_count() == 1 && program.cost() > 1) {
+        // Leaves that take long have told their slopes all over the box. Those that are not 0 in it
+        // do not count: with ±∞ in their place the value has the same sign and is no nearer to 0.
+        if let Some(slopes) = crossing.filter(|_| program.is_dear()) {
             return Known { slopes, sides: None };
         }
-        let zero = Interval::point(0.0);
-        let side = |axis: usize| Dual::new(Interval::new(room.min[axis], room.max[axis]), [along[axis], zero, zero]);
-        let slopes = program.evaluate([side(0), side(1), side(2)], &mut Vec::new()).gradient()[0];
+        let slopes = along.value();
         let slopes = Slopes::of(slopes, slopes.magnitude());
         Known { slopes, sides: None }
     }

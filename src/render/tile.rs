@@ -148,8 +148,8 @@ impl Tracer {
             }
             let united = packet.united(cell);
             let is_whole = united.is_some_and(are_bent);
-            let known = if is_whole { Known::ANY } else { packet.slopes(cell) };
-            if !packet.inside && known.slopes.falls {
+            let known = if is_whole { Known::ANY } else { packet.slopes(searched(united, cell)) };
+            if !packet.inside && united.is_none() && known.slopes.falls {
                 // Seen from behind.
                 continue;
             }
@@ -223,8 +223,8 @@ impl Tracer {
                 self.spans.iter().for_each(|span| packet.add(&self.rays[span.ray as usize]));
                 let united = packet.united(cell);
                 let is_whole = united.is_some_and(are_bent);
-                let known = if is_whole { Known::ANY } else { packet.slopes(cell) };
-                if !packet.inside && known.slopes.falls {
+                let known = if is_whole { Known::ANY } else { packet.slopes(searched(united, cell)) };
+                if !packet.inside && united.is_none() && known.slopes.falls {
                     continue;
                 }
                 if !is_whole && divides(cell, self.spans.len(), &known) {
@@ -414,6 +414,11 @@ fn nearer(cell: &Cell, ray: u32, rays: &[Ray], surfaces: &[Surface], tie: f64) -
 /// box on one side of it from end to end, and that on the other not at all.
 const STEEPEST: f64 = 1e200;
 
+/// What of a cell takes rays longest: where it is united, what does not bend one way, the last.
+fn searched<'a>(united: Option<&'a [Cell]>, cell: &'a Cell) -> &'a Cell {
+    united.and_then(<[Cell]>::last).unwrap_or(cell)
+}
+
 /// Whether all parts of a cell bend one way along rays: to divide it would part them no further.
 fn are_bent(parts: &[Cell]) -> bool {
     parts.iter().all(|part| part.bend.is_some())
@@ -466,12 +471,14 @@ fn divides(cell: &Cell, count: usize, known: &Known) -> bool {
     }
     let one_way = bent || known.is_one_way();
     let steepest = known.slopes.value.magnitude();
-    let most = match (cost > leaves, steepest < STEEP) {
+    let is_searched = cell.program.is_searched();
+    let most = match (is_searched, steepest < STEEP) {
         (true, true) => SEARCHED,
         (false, true) => RAYS,
         (_, false) => BLIND,
     };
-    let much = if one_way { cost > 1 && !cell.is_stale() && count * cost > 8192 } else { count * leaves > most };
+    let each = if is_searched { leaves } else { cost };
+    let much = if one_way { cost > 1 && !cell.is_stale() && count * cost > 8192 } else { count * each > most };
     share > FINEST && much
 }
 
