@@ -96,6 +96,12 @@ fn nothing_has_no_clearance_and_faults_are_told() {
         assert!(error.to_string().contains("thicker"), "{error}");
         assert!(matches!(error, PrepareError::Solid(SolidError::Surface { .. })));
     }
+    // Nor is what may be: of faces that fall together no range tells that nothing is between them.
+    let slab = Solid::cuboid([1.0; 3]);
+    let touching = (&slab & slab.translate([1.0, 0.0, 0.0])).rotate_z(deg(20.0));
+    let error = ball.translate([30.0, 0.0, 0.0]).clearance(&touching, &Run::default()).unwrap_err();
+    assert!(matches!(&error, PrepareError::Solid(SolidError::Surface { .. })), "{error}");
+    assert!(error.to_string().contains("not known"), "{error}");
     let endless = Solid::half_space([0.0, 0.0, 1.0], -5.0);
     assert!(matches!(ball.clearance(&endless, &Run::default()), Err(PrepareError::Solid(_))));
     let run = Run::default();

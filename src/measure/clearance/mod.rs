@@ -17,7 +17,7 @@ use rvachev_field::Patches;
 
 use self::apart::{Found, search};
 use self::doubts::Known;
-use self::missed::inner_point;
+use self::missed::{Inside, inside};
 use self::overlap::{Entry, common, depth, entry, within};
 use super::integral::integral;
 use crate::distance::{compiled_with, surface_with};
@@ -112,7 +112,8 @@ impl Solid {
     ///
     /// # Errors
     /// What is wrong with a solid, that it has no finite box, that it is so thin that nothing of
-    /// its surface is found ([`SolidError::Surface`]), or that the work was cancelled.
+    /// its surface is found, or that it is not known whether it is empty (both
+    /// [`SolidError::Surface`]), or that the work was cancelled.
     pub fn clearance(&self, other: &Solid, run: &Run) -> Result<Option<Clearance>, PrepareError> {
         let run = run.stage(0.0, 1.0);
         let found = run.install(|| self.clearance_on(other, &run))?;
@@ -132,8 +133,11 @@ impl Solid {
         let mut missed = None;
         for (side, bounds) in sides.iter().zip([own_box, other_box]) {
             if side.surface.patches.is_empty() {
-                let Some(p) = inner_point(side.program, &bounds, run)? else { return Ok(None) };
-                missed = missed.or(Some(side.missed(p)));
+                match inside(side.program, &bounds, run)? {
+                    Inside::Nothing => return Ok(None),
+                    Inside::At(p) => missed = missed.or(Some(side.missed(p))),
+                    Inside::Unknown(p) => missed = missed.or(Some(side.unknown(p))),
+                }
             }
         }
         if let Some(reason) = missed {
@@ -239,6 +243,19 @@ impl<'a> Side<'a> {
         format!(
             "the solid is at {}, and thinner there than what can be told apart of it ({}); make it \
              thicker, or leave it out of the clearance",
+            point(p, size),
+            figures(size, 2)
+        )
+    }
+
+    /// What is said of a surface of which nothing was found, where it is not known whether there is
+    /// any.
+    fn unknown(&self, p: DVec3) -> String {
+        let size = self.fineness();
+        format!(
+            "it is not known whether anything of the solid is left, at {} for one: surfaces fall together there, or \
+             what is between them is thinner than what can be told apart ({}); leave it out of the clearance if it \
+             is empty",
             point(p, size),
             figures(size, 2)
         )
