@@ -27,6 +27,7 @@
 //! triangle; I. Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies* (2007).
 
 mod apart;
+mod approach;
 mod block;
 mod chunks;
 mod closest;
@@ -64,6 +65,7 @@ use self::hierarchy::{Node, Tree};
 use self::search::{Best, Entries, Keep, Range, Stack};
 use crate::Bounds;
 
+pub use self::approach::Approach;
 pub use self::inscribed::Walls;
 pub use self::patch::Patch;
 pub use self::solid::{MeshLeaf, OpenEdges};
