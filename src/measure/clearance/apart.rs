@@ -63,6 +63,9 @@ enum Place {
     Open(f64),
 }
 
+/// How near a point of a piece is that is nearest of those that were asked, and that point.
+type End = Option<(f64, DVec3)>;
+
 /// Two surfaces, of which the first is divided.
 struct Search<'a> {
     from: &'a Side<'a>,
@@ -241,9 +244,9 @@ impl<'a> Search<'a> {
                     let best = nearest.or_else(|| corners.min_by(|a, b| a.0.total_cmp(&b.0)));
                     (own, (place, best))
                 };
-                let (found, told): (Vec<Piece>, Vec<(Place, Option<(f64, DVec3)>)>) =
+                let (found, told): (Vec<Piece>, Vec<(Place, End)>) =
                     some.par_iter().with_min_len(AT_ONCE / 16).map(look).unzip();
-                let (places, ends): (Vec<Place>, Vec<Option<(f64, DVec3)>>) = told.into_iter().unzip();
+                let (places, ends): (Vec<Place>, Vec<End>) = told.into_iter().unzip();
                 let open = ends.iter().zip(&places).filter(|(_, place)| matches!(place, Place::Open(_)));
                 let ends = open.filter_map(|(end, _)| *end);
                 if let Some(best) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 < self.nearest.0) {

@@ -247,7 +247,7 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         let at_most = |piece: &Piece| {
             let corner = piece.numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let off = piece.off(patches);
-            let own = Bounds::from_points(piece.points.into_iter()).inflate(off);
+            let own = Bounds::from_points(piece.points).inflate(off);
             let out = (own.max - bounds.min).min(bounds.max - own.min).min_element();
             (corner + piece.longest_side() / 3f64.sqrt() + off).min(out)
         };
