@@ -101,7 +101,8 @@
 //! red.*
 //!
 //! How far two solids are apart, with the two nearest points; or how deep they go into each other,
-//! and what volume they have in common. What only touches does not overlap.
+//! and what volume they have in common. What only touches does not overlap. Of meshes that were
+//! read, and of extruded polygons such as gears, it is told from their triangles, in milliseconds.
 //!
 //! ```
 //! use rvachev::{Run, Solid};

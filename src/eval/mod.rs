@@ -19,6 +19,7 @@ mod code;
 mod compile;
 mod composite;
 mod context;
+mod contrary;
 mod crossing;
 mod depth;
 mod exact;

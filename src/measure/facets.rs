@@ -65,6 +65,11 @@ impl Facets {
         Ok(Some(Facets { triangles, rounding: rounding * stretch }))
     }
 
+    /// How far the surface may be off them.
+    pub(super) fn rounding(&self) -> f64 {
+        self.rounding
+    }
+
     /// All that they enclose.
     pub(super) fn moments(&self) -> Moments {
         let Some(about) = self.triangles.first().map(|triangle| triangle[0]) else { return Moments::default() };

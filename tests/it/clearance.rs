@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rvachev::{
-    CellSize, Clearance, Helix, MeshSettings, Prism, Profile, RFunction, Run, Solid, SolidError, deg,
-    error::PrepareError, rad,
+    CellSize, Clearance, Helix, MeshSettings, MeshSolid, Polygon, Prism, Profile, RFunction, Run, Solid, SolidError,
+    deg, error::PrepareError, rad,
 };
 
 fn clearance(a: &Solid, b: &Solid) -> Clearance {
@@ -96,6 +96,12 @@ fn nothing_has_no_clearance_and_faults_are_told() {
         assert!(error.to_string().contains("thicker"), "{error}");
         assert!(matches!(error, PrepareError::Solid(SolidError::Surface { .. })));
     }
+    // Nor is what may be: of faces that fall together no range tells that nothing is between them.
+    let slab = Solid::cuboid([1.0; 3]);
+    let touching = (&slab & slab.translate([1.0, 0.0, 0.0])).rotate_z(deg(20.0));
+    let error = ball.translate([30.0, 0.0, 0.0]).clearance(&touching, &Run::default()).unwrap_err();
+    assert!(matches!(&error, PrepareError::Solid(SolidError::Surface { .. })), "{error}");
+    assert!(error.to_string().contains("not known"), "{error}");
     let endless = Solid::half_space([0.0, 0.0, 1.0], -5.0);
     assert!(matches!(ball.clearance(&endless, &Run::default()), Err(PrepareError::Solid(_))));
     let run = Run::default();
@@ -219,10 +225,53 @@ fn gears_in_mesh_have_their_backlash() {
     // Half of it on each side, along the line of action, less what chords cut off.
     let expected = 0.5 * backlash * 20f64.to_radians().cos();
     let turned = wheel.rotate_z(rad(std::f64::consts::PI / 30.0)).translate([47.0, 0.0, 0.0]);
-    let found = pinion.clearance(&turned, &Run::default()).unwrap().unwrap();
+    let found = clearance(&pinion, &turned);
     assert!(!found.overlaps && (found.distance - expected).abs() < 0.01, "{found:?} {expected}");
-    assert!(found.tolerance < 0.013, "{found:?}");
+    // Their faces are flat and known: nothing is measured.
+    assert!(found.tolerance < 0.002, "{found:?}");
     // Turned by all of the play and more a flank goes into the other.
     let jammed = pinion.rotate_z(rad(0.15 / 17.0)).clearance(&turned, &Run::default()).unwrap().unwrap();
     assert!(jammed.overlaps && jammed.depth > 0.02 && jammed.depth < 0.1, "{jammed:?}");
+    // Their ends fall together, and are not deep.
+    assert!(jammed.depth_error < 0.15, "{jammed:?}");
+    // Plates are as deep all over as their boxes tell.
+    let plate = Solid::from_mesh(
+        &Solid::cuboid([80.0, 60.0, 4.0]).mesh(&MeshSettings::default()).unwrap(),
+        MeshSolid::default(),
+    );
+    let found = plate.clearance(&plate.translate([0.0, 0.0, 3.0]), &Run::default()).unwrap().unwrap();
+    assert!(found.overlaps && (found.depth - 1.0).abs() < 0.02 && found.depth_error < 0.05, "{found:?}");
+}
+
+#[test]
+fn meshes_and_extruded_polygons_have_the_clearance_of_their_triangles() {
+    let settings = MeshSettings { cell: CellSize::LongestSide(12), ..MeshSettings::default() };
+    let mesh = |solid: &Solid| Solid::from_mesh(&solid.mesh(&settings).unwrap(), MeshSolid::default());
+    // Edge against edge, off all corners of the triangles.
+    let block = Solid::cuboid([4.0, 4.0, 2.0]);
+    // How far the edges of a square bar are from its middle.
+    let tip = 2f64.sqrt();
+    let bar = Solid::cuboid([4.0, 2.0, 2.0]).rotate_x(deg(45.0));
+    let edge = bar.rotate_z(deg(70.0)).translate([0.3, 0.2, tip + 0.125]);
+    let low = bar.rotate_z(deg(90.0)).translate([0.0, 0.0, -tip]);
+    for (upper, lower) in [(mesh(&edge), mesh(&low)), (mesh(&edge), low)] {
+        let found = clearance(&upper, &lower);
+        assert!((found.distance - 0.125).abs() < 1e-4 && found.tolerance < 1e-3, "{found:?}");
+    }
+    // A frame about a bar, mirrored and stretched.
+    let frame = [[-4.0, -3.0], [5.0, -3.0], [5.0, 3.0], [-4.0, 3.0]];
+    let hole = [[-2.0, -1.0], [3.0, -1.0], [3.0, 1.0], [-2.0, 1.0]];
+    let frame = Profile::from(Polygon::new([frame, hole])).extrude(2.0).reflect_x().scale(2.0);
+    let bar = Profile::polygon([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]).extrude(30.0);
+    let found = clearance(&frame, &bar.translate([-4.5, 0.5, 0.0]));
+    assert!(!found.overlaps && (found.distance - 0.5).abs() < 1e-4, "{found:?}");
+    assert!(clearance(&frame, &bar.translate([-4.5, 1.5, 0.0])).overlaps);
+    // Above each other.
+    let found = clearance(&frame, &bar.translate([7.0, 0.0, 17.25]));
+    assert!(!found.overlaps && (found.distance - 0.25).abs() < 1e-4, "{found:?}");
+    // One within the other's hollow, and within its material.
+    let shell = mesh(&Solid::cuboid([10.0; 3]).shell(1.0));
+    let found = clearance(&mesh(&Solid::cuboid([2.0; 3]).translate([2.5, 0.0, 0.0])), &shell);
+    assert!(!found.overlaps && (found.distance - 0.5).abs() < 1e-4, "{found:?}");
+    assert!(clearance(&mesh(&block), &mesh(&Solid::cuboid([10.0; 3]))).overlaps);
 }

@@ -173,6 +173,7 @@ fn meshes_that_are_inside_out_or_too_large_say_so() {
     let far = error(&block([-1e30; 3], [1e30; 3]));
     assert!(far.starts_with("mesh: coordinate is -1000000015047466"), "{far}");
     assert!(far.ends_with("allowed: -1e12 to 1e12; scale the mesh"), "{far}");
+    assert!(error(&block([-3e38; 3], [3e38; 3])).ends_with("allowed: -1e12 to 1e12; scale the mesh"));
 }
 
 /// Right above a large face, squares of a slice are large all the same.

@@ -90,7 +90,7 @@ pub use leaf::{Case, Field, Kernel};
 pub use minimal_surface::{Grading, MinimalSurface};
 pub use network_lattice::NetworkLattice;
 pub use number::{Joined, Number};
-pub use patches::{Foot, MeshLeaf, OpenEdges, Patch, Patches, SurfaceDistance, Walls};
+pub use patches::{Approach, Foot, MeshLeaf, OpenEdges, Patch, Patches, SurfaceDistance, Walls};
 pub use placement::{Placement, smallest_stretch};
 pub use points::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,

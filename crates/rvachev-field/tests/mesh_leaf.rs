@@ -326,3 +326,25 @@ fn ranges_hold_where_open() {
         assert!(bounds.contains(p) || leaf.value(p.to_array()) < 0.0);
     }
 }
+
+/// At the end of what single precision holds, where a leaf is refused when it is checked.
+#[test]
+fn sides_of_the_largest_have_no_nan() {
+    let (positions, triangles) = torus_triangles(16);
+    for size in [1e11_f32, 1e30, 2.4e38] {
+        let large: Vec<Vec3> = positions.iter().map(|p| *p * size).collect();
+        let leaf = MeshLeaf::new(&large, &triangles, None, None, &Run::default()).unwrap();
+        assert_eq!(leaf.check().is_err(), size > 1e12);
+        let mut random = Random(5);
+        let points: Vec<Vec3> = (0..4 * CHUNK).map(|_| random.point(1.4).as_vec3() * size).collect();
+        let columns = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<f32>>());
+        let mut out = vec![0.0_f32; points.len()];
+        let columns = columns.each_ref().map(|column| &column[..]);
+        leaf.lanes32(Chunk { points: columns, placement: &Placement::IDENTITY, out: [&mut out] });
+        for (p, value) in points.iter().zip(&out) {
+            let exact = leaf.value(p.as_dvec3().to_array());
+            let is_near = leaf.nearest(p.as_dvec3()).unwrap().distance < 1e-5 * f64::from(size);
+            assert!(!value.is_nan() && (is_near || (*value > 0.0) == (exact > 0.0)), "{value} for {exact} at {p}");
+        }
+    }
+}

@@ -17,7 +17,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rvachev_field::Patches;
+use rvachev_field::{Approach, Patches};
 
 use super::levels::Levels;
 use super::piece::Piece;
@@ -62,6 +62,9 @@ enum Place {
     /// It may be as near as that.
     Open(f64),
 }
+
+/// How near a point of a piece is that is nearest of those that were asked, and that point.
+type End = Option<(f64, DVec3)>;
 
 /// Two surfaces, of which the first is divided.
 struct Search<'a> {
@@ -117,7 +120,8 @@ impl<'a> Search<'a> {
     fn loss(&self) -> f64 {
         let sizes: f64 = [self.from, self.to].iter().map(|side| side.surface.patches.bounds().longest_side()).sum();
         // Where it is in doubt a surface may be nearer by that much in any case.
-        let of = |side: &Side<'_>| [3.0 * side.fineness(), side.exactness()];
+        let doubt = |side: &Side<'_>| if side.is_known { 0.0 } else { side.exactness() };
+        let of = |side: &Side<'_>| [3.0 * side.fineness(), doubt(side)];
         let [fine, coarse] = of(self.from);
         let [fine_other, coarse_other] = if self.is_gentle { [0.0; 2] } else { of(self.to) };
         RELATIVE * self.known() + (fine + fine_other).max(coarse + coarse_other) + OF_SIZES * sizes
@@ -225,16 +229,26 @@ impl<'a> Search<'a> {
                 let look = |piece: &Piece| {
                     let mut own = *piece;
                     let by_value = if self.is_gentle { self.by_value(piece, enough) } else { f64::NEG_INFINITY };
+                    // Of flat patches the triangle is asked at once.
+                    let mut nearest = None;
                     let place = self.place(enough, piece.middle(), by_value, || {
+                        nearest = others.approach(piece.points);
+                        if let Some(Approach { distance, .. }) = nearest {
+                            return distance - piece.off(patches);
+                        }
                         own = own.numbered(|p| distance(others, p));
                         least_of(&own, patches)
                     });
-                    (own, place)
+                    let corners = own.numbers.into_iter().zip(own.points);
+                    let nearest = nearest.map(|found| (found.distance, found.point));
+                    let best = nearest.or_else(|| corners.min_by(|a, b| a.0.total_cmp(&b.0)));
+                    (own, (place, best))
                 };
-                let (found, places): (Vec<Piece>, Vec<Place>) =
+                let (found, told): (Vec<Piece>, Vec<(Place, End)>) =
                     some.par_iter().with_min_len(AT_ONCE / 16).map(look).unzip();
-                let open = found.iter().zip(&places).filter(|(_, place)| matches!(place, Place::Open(_)));
-                let ends = open.flat_map(|(piece, _)| piece.numbers.into_iter().zip(piece.points));
+                let (places, ends): (Vec<Place>, Vec<End>) = told.into_iter().unzip();
+                let open = ends.iter().zip(&places).filter(|(_, place)| matches!(place, Place::Open(_)));
+                let ends = open.filter_map(|(end, _)| *end);
                 if let Some(best) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 < self.nearest.0) {
                     self.nearest = best;
                     self.learn(self.slack);
@@ -325,7 +339,7 @@ mod tests {
         let solids = [Solid::cylinder(5.0, 20.0), plate];
         let programs = solids.each_ref().map(|solid| compiled(solid).unwrap());
         let surfaces = solids.each_ref().map(|solid| surface_of(solid).unwrap());
-        let [peg, plate] = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
+        let [peg, plate] = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n], false));
         for (from, to) in [(&peg, &plate), (&plate, &peg)] {
             let mut search = Search::new(from, to);
             let near = search.near(&Run::default()).unwrap();

@@ -205,7 +205,7 @@ mod tests {
             let doubts = vec![(balls[n].bounds().unwrap().inflate(0.01), by + small[n].tolerance); boxes];
             Surface::new(small[n].patches.clone(), small[n].accuracy, None).in_doubt(small[n].tolerance, doubts)
         });
-        let sides = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
+        let sides = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n], false));
         let known = Known { least: 1.0 + 2.0 * by - fine, of_both: true, loss };
         least([&sides[0], &sides[1]], &known, &Run::default()).unwrap()
     }

@@ -7,6 +7,7 @@
 
 mod apart;
 mod doubts;
+mod exact;
 mod levels;
 mod missed;
 mod overlap;
@@ -17,7 +18,7 @@ use rvachev_field::Patches;
 
 use self::apart::{Found, search};
 use self::doubts::Known;
-use self::missed::inner_point;
+use self::missed::{Inside, inside};
 use self::overlap::{Entry, common, depth, entry, within};
 use super::integral::integral;
 use crate::distance::{compiled_with, surface_with};
@@ -92,6 +93,10 @@ impl Solid {
     /// both surfaces are alike over large parts and close, or where one of them was not found that
     /// exactly: then it says how much.
     ///
+    /// Closed meshes whose triangles do not cross, and polygons that are extruded straight, wherever
+    /// they were moved to, are their triangles: nothing is measured of them, and the tolerance is a
+    /// thousandth of the distance and what single precision leaves open, some 10⁻⁶ of the sizes.
+    ///
     /// That no points are nearer is told of the surface of one of the solids, as it was measured,
     /// and of the other solid itself if its value changes by no more than lengths do, as that of
     /// distances and of convex leaves does, joined and not deformed; else, and where a length of
@@ -106,13 +111,15 @@ impl Solid {
     ///
     /// Each surface takes as long as a mesh, once: solids that are moved or turned have that of the
     /// solid at rest, so that parts of an assembly are not measured anew in each position. After
-    /// that a clearance takes milliseconds where one place is nearest, some tenths of a second
-    /// where a gap is even all over, and seconds between threads and the like. The volume of an
+    /// that a clearance takes milliseconds where one place is nearest and of meshes and extruded
+    /// polygons, some tenths of a second where a gap is even all over, and seconds between threads
+    /// and the like. The volume of an
     /// overlap is found as by [`measure`](Solid::measure).
     ///
     /// # Errors
     /// What is wrong with a solid, that it has no finite box, that it is so thin that nothing of
-    /// its surface is found ([`SolidError::Surface`]), or that the work was cancelled.
+    /// its surface is found, or that it is not known whether it is empty (both
+    /// [`SolidError::Surface`]), or that the work was cancelled.
     pub fn clearance(&self, other: &Solid, run: &Run) -> Result<Option<Clearance>, PrepareError> {
         let run = run.stage(0.0, 1.0);
         let found = run.install(|| self.clearance_on(other, &run))?;
@@ -127,13 +134,21 @@ impl Solid {
         if own_box.is_empty() || other_box.is_empty() {
             return Ok(None);
         }
-        let surfaces = [surface_with(self, &to_own)?, surface_with(other, &to_other)?];
-        let sides = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
+        let exact = [exact::surface(self, &to_own)?, exact::surface(other, &to_other)?];
+        let are_exact = exact.each_ref().map(Option::is_some);
+        let [own, others] = exact;
+        let own = if let Some(own) = own { own } else { surface_with(self, &to_own)? };
+        let others = if let Some(others) = others { others } else { surface_with(other, &to_other)? };
+        let surfaces = [own, others];
+        let sides = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n], are_exact[n]));
         let mut missed = None;
         for (side, bounds) in sides.iter().zip([own_box, other_box]) {
             if side.surface.patches.is_empty() {
-                let Some(p) = inner_point(side.program, &bounds, run)? else { return Ok(None) };
-                missed = missed.or(Some(side.missed(p)));
+                match inside(side.program, &bounds, run)? {
+                    Inside::Nothing => return Ok(None),
+                    Inside::At(p) => missed = missed.or(Some(side.missed(p))),
+                    Inside::Unknown(p) => missed = missed.or(Some(side.unknown(p))),
+                }
             }
         }
         if let Some(reason) = missed {
@@ -221,16 +236,18 @@ impl Solid {
 struct Side<'a> {
     program: &'a Program,
     surface: &'a Surface,
-    /// Whether the value changes by 1 per length unit at most.
+    /// Whether the value changes by 1 per length unit at most, and tells more than the patches do.
     is_gentle: bool,
+    /// Whether the patches are the surface itself.
+    is_known: bool,
 }
 
 impl<'a> Side<'a> {
-    fn new(compiled: &'a Compiled, surface: &'a Surface) -> Side<'a> {
+    fn new(compiled: &'a Compiled, surface: &'a Surface, is_known: bool) -> Side<'a> {
         let program = &compiled.surface;
         // A distance that was measured jumps where its patches are off the surface.
         let is_exact = compiled.accuracy == Accuracy::default();
-        Side { program, surface, is_gentle: is_exact && program.is_gentle() }
+        Side { program, surface, is_gentle: !is_known && is_exact && program.is_gentle(), is_known }
     }
 
     /// What is said of a surface of which nothing was found, though a point is inside.
@@ -239,6 +256,19 @@ impl<'a> Side<'a> {
         format!(
             "the solid is at {}, and thinner there than what can be told apart of it ({}); make it \
              thicker, or leave it out of the clearance",
+            point(p, size),
+            figures(size, 2)
+        )
+    }
+
+    /// What is said of a surface of which nothing was found, where it is not known whether there is
+    /// any.
+    fn unknown(&self, p: DVec3) -> String {
+        let size = self.fineness();
+        format!(
+            "it is not known whether anything of the solid is left, at {} for one: surfaces fall together there, or \
+             what is between them is thinner than what can be told apart ({}); leave it out of the clearance if it \
+             is empty",
             point(p, size),
             figures(size, 2)
         )

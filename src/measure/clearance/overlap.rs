@@ -55,8 +55,9 @@ pub(super) fn common(from: &Side<'_>, to: &Side<'_>, slack: f64, p: DVec3) -> Op
     let others = &to.surface.patches;
     let normal = from.program.gradient(p).1.normalize_or_zero();
     let inner = INSIDE.map(|by| p + by * slack * normal);
+    // On the very triangles of a mesh its value takes long.
     let is_common =
-        |p: &DVec3| from.program.value(*p) > 0.0 && to.program.value(*p) > 0.0 && distance(others, *p) > slack;
+        |p: &DVec3| distance(others, *p) > slack && to.program.value(*p) > 0.0 && from.program.value(*p) > 0.0;
     inner.into_iter().find(is_common)
 }
 
@@ -201,7 +202,7 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
     let bounds = others.bounds();
     let below = |p: DVec3| {
         let distance = distance(others, p);
-        if to.program.value(p) > 0.0 { distance } else { -distance }
+        if distance > to.fineness() && to.program.value(p) > 0.0 { distance } else { -distance }
     };
     let mut best = 0.0;
     // Patches that follow each other are near each other: of many a point of the middle one tells.
@@ -241,12 +242,23 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
     loop {
         best = pieces.iter().flat_map(|piece| piece.numbers).fold(best, f64::max);
         let enough = best + slack.max(RELATIVE * best);
-        // Depths change by as much as points are apart at most.
+        // Depths change by as much as points are apart at most, and the surface is passed on the
+        // way out of its box.
         let at_most = |piece: &Piece| {
             let corner = piece.numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            corner + piece.longest_side() / 3f64.sqrt() + piece.off(patches)
+            let off = piece.off(patches);
+            let own = Bounds::from_points(piece.points).inflate(off);
+            let out = (own.max - bounds.min).min(bounds.max - own.min).min_element();
+            (corner + piece.longest_side() / 3f64.sqrt() + off).min(out)
         };
-        pieces.retain(|piece| at_most(piece) > enough);
+        // What is outside when it is moved outwards by what does not count is no deeper than that:
+        // of faces that fall together it is told so.
+        let is_out = |piece: &Piece| {
+            piece.numbers.iter().all(|deep| *deep <= slack)
+                && to.program.range_zone(&piece.zone(patches, slack * piece.normal())).hi() <= 0.0
+        };
+        run.check()?;
+        pieces = pieces.into_par_iter().filter(|piece| at_most(piece) > enough && !is_out(piece)).collect();
         asked += 4 * pieces.len();
         if pieces.is_empty() || asked > DEPTHS {
             let deepest = pieces.iter().map(at_most).fold(enough, f64::max);
@@ -274,7 +286,7 @@ mod tests {
         let solids = [Solid::cuboid([1.0, 1.0, 2f64.powi(-7)]), Solid::sphere(10.0)];
         let programs = solids.each_ref().map(|solid| compiled(solid).unwrap());
         let surfaces = solids.each_ref().map(|solid| surface_of(solid).unwrap());
-        let [sheet, ball] = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n]));
+        let [sheet, ball] = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n], false));
         match within(&sheet, &ball, 1.0, &Run::default()).unwrap() {
             Entry::At(p) => assert!(sheet.program.value(p) > 0.0 && p.length() < 9.0, "{p}"),
             Entry::AtMost(deep) => assert!(deep >= 10.0, "{deep}"),
@@ -282,7 +294,7 @@ mod tests {
         // One that is beyond it is not.
         let beyond = Solid::sphere(1.0).translate([20.0, 0.0, 0.0]);
         let (program, surface) = (compiled(&beyond).unwrap(), surface_of(&beyond).unwrap());
-        let found = within(&Side::new(&program, &surface), &ball, 1.0, &Run::default()).unwrap();
+        let found = within(&Side::new(&program, &surface, false), &ball, 1.0, &Run::default()).unwrap();
         assert!(matches!(found, Entry::AtMost(deep) if deep == 0.0));
     }
 }

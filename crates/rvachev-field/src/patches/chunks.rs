@@ -44,10 +44,12 @@ impl SurfaceDistance {
     /// Numbers with the signs of points, given the squares of their distances in units of the
     /// frame.
     fn sides32(&self, points: [&[f32]; 3], placement: &Placement, squares: &[f32], out: &mut [f32]) {
-        let (unit, error) = (self.patches.unit() as f32, self.error() as f32);
+        // Half of it, as that of a surface at the end of what is finite is not finite itself.
+        let (half_unit, error) = ((0.5 * self.patches.unit()) as f32, self.error() as f32);
         let mut apart = [0.0; BLOCK];
         for (to, square) in apart.iter_mut().zip(squares) {
-            *to = unit * (square.sqrt() * CLEARLY - CLEAR) - error;
+            let half = half_unit * (square.sqrt() * CLEARLY - CLEAR);
+            *to = (half + half).min(f32::MAX) - error;
         }
         let placement = &unscaled(placement);
         self.sign.sides32(Chunk { points, placement, out: [out] }, &apart[..squares.len()]);

@@ -27,6 +27,7 @@
 //! triangle; I. Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies* (2007).
 
 mod apart;
+mod approach;
 mod block;
 mod chunks;
 mod closest;
@@ -64,6 +65,7 @@ use self::hierarchy::{Node, Tree};
 use self::search::{Best, Entries, Keep, Range, Stack};
 use crate::Bounds;
 
+pub use self::approach::Approach;
 pub use self::inscribed::Walls;
 pub use self::patch::Patch;
 pub use self::solid::{MeshLeaf, OpenEdges};
@@ -186,13 +188,6 @@ impl Patches {
         if self.nodes.is_empty() { &[] } else { Entries::ALL }
     }
 
-    /// A patch that is about as near to a point of the surface's frame as any, and the square of
-    /// how far it is at most.
-    #[inline(never)]
-    fn near(&self, local: [f64; 3]) -> Best<f64> {
-        self.search(local, self.all(), &[], Range::all(0.0), &mut Stack::new(0.0), &mut Any)
-    }
-
     /// The axis that is steepest upon a patch.
     fn steepest(&self, patch: u32) -> usize {
         let [x, y, z] = self.faces.get(patch as usize).map_or([0.0; 3], |face| face.n.map(f32::abs));
@@ -273,13 +268,6 @@ impl Keep<f64> for One<'_> {
             self.best.take(self.patches.closest(at as usize, self.local).square, at);
         }
     }
-}
-
-/// Takes no curved patch: its triangle tells enough.
-struct Any;
-
-impl Keep<f64> for Any {
-    fn keep(&mut self, _: u32, _: f64, _: f64) {}
 }
 
 impl fmt::Debug for Patches {

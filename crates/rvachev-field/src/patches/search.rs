@@ -194,6 +194,24 @@ impl Patches {
         best.within(known)
     }
 
+    /// A patch that is hardly farther from a point than others: one of the box that going down to
+    /// the nearer of two boxes leads to; and the square of how far it is at most.
+    #[inline(never)]
+    pub(super) fn near(&self, p: [f64; 3]) -> Best<f64> {
+        let mut best = Best::none(0.0);
+        let Some(mut node) = self.nodes.first() else { return best };
+        let middle = p.map(|x| x as f32);
+        while node.count >= PARENT {
+            let [_, nearer] = self.far_and_near(node, p, middle);
+            node = &self.nodes[nearer as usize];
+        }
+        for at in node.first..node.first + node.count {
+            let Some((face, sides)) = self.at(at as usize) else { continue };
+            best.take(farthest(f64::from_face(p, face, sides), face.sag), at);
+        }
+        best
+    }
+
     /// The children of a box, the nearer one last.
     #[inline(always)]
     fn far_and_near<R: Packet>(&self, node: &Node, p: [R; 3], middle: [f32; 3]) -> [u32; 2] {

@@ -21,8 +21,9 @@ use rvachev_num::lanes::Lanes;
 use super::super::block::{BLOCK, Block};
 use super::super::face::{Face, Sides};
 use super::super::hierarchy::PARENT;
-use super::super::packet::{Packet, WIDEST};
+use super::super::packet::Packet;
 use super::between::{Between, Crossed};
+use super::flood::Flood;
 use super::near::{Hull, Near, box_of};
 use super::winding::{Stack, Winding};
 use super::winding_field::{FARTHEST, placed};
@@ -47,6 +48,7 @@ struct Known {
 pub(super) struct Crossings<E> {
     block: Block<E>,
     found: [E; BLOCK],
+    flood: Flood<E>,
     near: Near<E>,
     stack: Stack,
 }
@@ -54,7 +56,8 @@ pub(super) struct Crossings<E> {
 impl<E: Element> Crossings<E> {
     #[inline(always)]
     pub(super) fn new() -> Crossings<E> {
-        Crossings { block: Block::new(), found: [E::default(); BLOCK], near: Near::new(), stack: Stack::default() }
+        let (block, found, flood) = (Block::new(), [E::default(); BLOCK], Flood::new());
+        Crossings { block, found, flood, near: Near::new(), stack: Stack::default() }
     }
 }
 
@@ -86,67 +89,99 @@ impl Winding {
             *to = L::Element::from_f64((apart.to_f64() * per_unit).min(0.5 * FARTHEST));
         }
         work.block.sort(len, 0);
+        work.flood.start();
+        let do_spread = !apart.is_empty();
         let mut known: Option<Known> = None;
         let mut are_near = true;
         let mut at = 0;
         while at < len {
             let here = at..at + L::WIDTH;
+            let mut open = work.flood.packet::<L>(simd, at);
+            if do_spread && are_near && known.is_none() {
+                known = self.known(&work.block, at, &mut work.stack);
+                if let Some(known) = known {
+                    work.found[at] = L::Element::from_f64(known.number - 0.5);
+                    work.flood.fill(at, work.block.numbers[at]);
+                    work.flood.spread::<L>(simd, &work.block, len, &mut work.found);
+                    open = work.flood.packet::<L>(simd, at);
+                }
+            }
+            if !open.lift(0.0).any_below(open) {
+                at += L::WIDTH;
+                continue;
+            }
             let p = [
                 L::load(simd, &work.block.columns[0][here.clone()]),
                 L::load(simd, &work.block.columns[1][here.clone()]),
                 L::load(simd, &work.block.columns[2][here.clone()]),
             ];
-            let known_before = known.take();
+            let before = L::load(simd, &work.found[here.clone()]);
+            // The farthest from the triangles holds the farthest.
+            let mut from = None;
+            let mut i = at;
+            while i < at + L::WIDTH {
+                let (above, apart) = (work.found[i].to_f64(), work.block.numbers[i].to_f64());
+                let is_told = !work.flood.is_open(i) && above != 0.0;
+                if is_told && from.is_none_or(|known: Known| apart > known.apart) {
+                    from = Some(Known { p: wide_of(work.block.point(i)), number: above + 0.5, apart });
+                }
+                i += 1;
+            }
             let from = if !are_near {
                 None
-            } else if known_before.is_some() {
-                known_before
+            } else if from.is_some() {
+                from
+            } else if known.is_some() {
+                known
             } else {
                 self.known(&work.block, at, &mut work.stack)
             };
-            let Some(mut from) = from else {
-                are_near = false;
-                (self.roughly(p, &mut work.stack) - 0.5).store(&mut work.found[here]);
-                at += L::WIDTH;
-                continue;
-            };
-            let mut free = [L::Element::from_f64(-1.0); WIDEST];
-            if !apart.is_empty() {
-                spread(simd, p, &work.block, at, &mut from, &mut free);
-            }
-            let is_free = L::load(simd, &free[..L::WIDTH]);
-            let mut number = p[0].lift(from.number);
-            if is_free.any_below(p[0].lift(0.0)) {
+            let mut crossed = None;
+            if let Some(from) = &from {
                 let mut hull = Hull::of(from.p);
-                let mut i = 0;
-                while i < L::WIDTH {
-                    if free[i].to_f64() < 0.0 {
-                        hull.with(wide_of(work.block.point(at + i)));
+                let mut i = at;
+                while i < at + L::WIDTH {
+                    if work.flood.is_open(i) {
+                        hull.with(wide_of(work.block.point(i)));
                     }
                     i += 1;
                 }
                 if !work.near.hull.holds(&hull) {
-                    are_near = self.gather(&work.block, at..len, L::WIDTH, &from, &mut work.near, &mut work.stack);
+                    let Crossings { block, flood, near, stack, .. } = &mut *work;
+                    are_near = self.gather(block, flood, at..len, L::WIDTH, from, near, stack);
                 }
-                let crossed = if are_near { self.crossed(simd, p, &from, &hull, &work.near) } else { None };
-                let Some(Crossed { more, doubt }) = crossed else {
-                    are_near = false;
-                    (self.roughly(p, &mut work.stack) - 0.5).store(&mut work.found[here]);
-                    at += L::WIDTH;
-                    continue;
-                };
-                // In doubt it is one half.
-                number = is_free.select(number, (-doubt).select(number + more, number.lift(0.5)));
+                if are_near {
+                    crossed = self.crossed(simd, p, from, &hull, &work.near);
+                }
             }
-            (number - 0.5).store(&mut work.found[here]);
-            // The farthest from the triangles holds the farthest.
+            let told = match (from, crossed) {
+                // In doubt it is one half.
+                (Some(from), Some(Crossed { more, doubt })) => {
+                    (-doubt).select(more + (from.number - 0.5), more.lift(0.0))
+                }
+                _ => {
+                    are_near = false;
+                    self.roughly(p, &mut work.stack) - 0.5
+                }
+            };
+            (-open).select(before, told).store(&mut work.found[here]);
+            known = None;
             let mut i = at;
             while i < at + L::WIDTH {
                 let (above, apart) = (work.found[i].to_f64(), work.block.numbers[i].to_f64());
                 if above != 0.0 && known.is_none_or(|known| apart > known.apart) {
                     known = Some(Known { p: wide_of(work.block.point(i)), number: above + 0.5, apart });
                 }
+                if work.flood.is_open(i) {
+                    work.flood.know(i);
+                    if are_near && above != 0.0 {
+                        work.flood.fill(i, work.block.numbers[i]);
+                    }
+                }
                 i += 1;
+            }
+            if do_spread && are_near {
+                work.flood.spread::<L>(simd, &work.block, len, &mut work.found);
             }
             at += L::WIDTH;
         }
@@ -232,12 +267,14 @@ impl Winding {
         (crossed.doubt <= 0.0).then_some(crossed.more)
     }
 
-    /// Finds the triangles about the points of a block from `at` on, as far as they are not many,
-    /// and a point that is known.
+    /// Finds the triangles about the points of a block whose sides are not known yet, as far as
+    /// they are not many, and a point that is known.
+    #[expect(clippy::too_many_arguments)]
     #[inline(never)]
     fn gather<E: Element>(
         &self,
         block: &Block<E>,
+        flood: &Flood<E>,
         points: ops::Range<usize>,
         width: usize,
         from: &Known,
@@ -248,7 +285,7 @@ impl Winding {
         while to > points.start {
             near.count = 0;
             near.hull = Hull::of(from.p);
-            for at in points.start..to {
+            for at in (points.start..to).filter(|at| flood.is_open(*at)) {
                 near.hull.with(wide_of(block.point(at)));
             }
             let hull = near.hull;
@@ -302,50 +339,6 @@ impl Winding {
             at += L::WIDTH;
         }
         if looked > MANY { None } else { Some(crossed) }
-    }
-}
-
-/// So often points of a packet are found by others of it.
-const ROUNDS: usize = 4;
-
-/// Finds points of a packet that are on the side of one that is known, which becomes one of them:
-/// two points are if they are nearer to each other than either is to any triangle. Of those `free`
-/// is not below 0.
-#[inline(always)]
-fn spread<L: Lanes<Element: Element> + Packet>(
-    simd: L::Token,
-    p: [L; 3],
-    block: &Block<L::Element>,
-    at: usize,
-    from: &mut Known,
-    free: &mut [L::Element; WIDEST],
-) {
-    let apart = L::load(simd, &block.numbers[at..at + L::WIDTH]);
-    let mut is_used = [false; WIDEST];
-    let mut round = 0;
-    while round < ROUNDS {
-        let [x, y, z] = from.p;
-        let d = [p[0] - x, p[1] - y, p[2] - z];
-        let square = d[0].mul_add(d[0], d[1].mul_add(d[1], d[2] * d[2]));
-        let ball = apart.max(apart.lift(from.apart.max(0.0)));
-        let all = L::load(simd, &free[..L::WIDTH]).max(ball * ball - square);
-        all.store(&mut free[..L::WIDTH]);
-        if !all.any_below(square.lift(0.0)) {
-            return;
-        }
-        let mut next = None;
-        let mut i = 0;
-        while i < L::WIDTH {
-            let apart = block.numbers[at + i].to_f64();
-            if free[i].to_f64() >= 0.0 && !is_used[i] && next.is_none_or(|(_, most)| apart > most) {
-                next = Some((i, apart));
-            }
-            i += 1;
-        }
-        let Some((i, apart)) = next else { return };
-        is_used[i] = true;
-        *from = Known { p: wide_of(block.point(at + i)), apart, ..*from };
-        round += 1;
     }
 }
 

@@ -13,6 +13,7 @@
 
 mod between;
 mod crossings;
+mod flood;
 mod gaps;
 mod near;
 mod rim;

@@ -10,6 +10,7 @@
 
 mod contours;
 mod edge;
+mod fill;
 mod near;
 mod patch;
 mod sweep;

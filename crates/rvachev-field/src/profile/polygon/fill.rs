@@ -1,0 +1,112 @@
+//! Triangles that fill a polygon.
+//!
+//! ```text
+//!     ---*---------------     Between the heights of two corners that follow each other no edge begins
+//!       / \      *            or ends, so that those that are there bound trapezia, two by two; each
+//!     -/---\----/-\------     goes on for as long as both of its edges are side by side.
+//! ```
+
+use std::collections::HashMap;
+
+use glam::DVec2;
+
+use super::Polygon;
+use super::edge::Edge;
+
+impl Polygon {
+    /// The edges of the border, from corner to corner, with the inside on the left.
+    pub fn edges(&self) -> impl Iterator<Item = [DVec2; 2]> {
+        self.border().edges.iter().map(|edge| [edge.start, edge.end])
+    }
+
+    /// Triangles that fill it, counter-clockwise, whose corners may be on sides of others; nothing
+    /// if they are more than `most`.
+    #[must_use]
+    pub fn triangles(&self, most: usize) -> Option<Vec<[DVec2; 3]>> {
+        let mut edges: Vec<&Edge> = self.border().edges.iter().filter(|edge| edge.start.y != edge.end.y).collect();
+        let low = |edge: &Edge| edge.start.y.min(edge.end.y);
+        edges.sort_by(|a, b| low(a).total_cmp(&low(b)));
+        let mut heights: Vec<f64> = edges.iter().flat_map(|edge| [edge.start.y, edge.end.y]).collect();
+        heights.sort_by(f64::total_cmp);
+        heights.dedup();
+        let mut rest = edges.into_iter().peekable();
+        let (mut here, mut open, mut found): (Vec<&Edge>, Vec<Trapezium<'_>>, _) = (Vec::new(), Vec::new(), Vec::new());
+        for from in heights.iter().copied() {
+            here.retain(|edge| edge.start.y.max(edge.end.y) > from);
+            while let Some(edge) = rest.next_if(|edge| low(edge) <= from) {
+                here.push(edge);
+            }
+            // Just above, where none of them meet.
+            let above = here.iter().map(|edge| edge.start.y.max(edge.end.y)).chain(rest.peek().map(|edge| low(edge)));
+            let middle = 0.5 * (from + above.fold(f64::INFINITY, f64::min));
+            here.sort_by(|a, b| across(a, middle).total_cmp(&across(b, middle)));
+            let mut next: Vec<Trapezium<'_>> =
+                here.chunks_exact(2).map(|sides| Trapezium { sides: [sides[0], sides[1]], from }).collect();
+            let places: HashMap<_, _> = next.iter().enumerate().map(|(at, own)| (own.key(), at)).collect();
+            for own in open {
+                match places.get(&own.key()) {
+                    // It goes on.
+                    Some(at) => next[*at].from = own.from,
+                    None => own.fill(from, &mut found),
+                }
+            }
+            open = next;
+            if found.len() > most {
+                return None;
+            }
+        }
+        Some(found)
+    }
+}
+
+/// What is between two edges, from a height on.
+struct Trapezium<'a> {
+    sides: [&'a Edge; 2],
+    from: f64,
+}
+
+impl Trapezium<'_> {
+    /// What tells its edges from others.
+    fn key(&self) -> [*const Edge; 2] {
+        self.sides.map(std::ptr::from_ref)
+    }
+
+    /// Its triangles, up to a height.
+    fn fill(&self, to: f64, found: &mut Vec<[DVec2; 3]>) {
+        let at = |side: usize, y: f64| DVec2::new(across(self.sides[side], y), y);
+        let [a, b, c, d] = [at(0, self.from), at(1, self.from), at(1, to), at(0, to)];
+        found.extend((a.x < b.x).then_some([a, b, c]));
+        found.extend((d.x < c.x).then_some([a, c, d]));
+    }
+}
+
+/// Where an edge is at a height.
+fn across(edge: &Edge, y: f64) -> f64 {
+    if y == edge.end.y {
+        return edge.end.x;
+    }
+    edge.start.x + (y - edge.start.y) / (edge.end.y - edge.start.y) * (edge.end.x - edge.start.x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_fill_all_of_it() {
+        let frame = [[0.0, 0.0], [4.0, 0.5], [4.0, 3.0], [0.0, 3.0]];
+        let window = [[1.0, 1.0], [3.0, 1.0], [3.0, 2.0], [1.0, 2.5]];
+        let star = (0..10).map(|k| {
+            let (angle, r) = (0.628 * f64::from(k) + 0.1, if k % 2 == 0 { 3.0 } else { 1.0 });
+            [r * angle.cos(), r * angle.sin()]
+        });
+        for polygon in [Polygon::new([frame, window]), Polygon::new([star.collect::<Vec<_>>()])] {
+            let triangles = polygon.triangles(100).unwrap();
+            let twice: f64 = triangles.iter().map(|[a, b, c]| (*b - *a).perp_dot(*c - *a)).sum();
+            assert!((0.5 * twice - polygon.area()).abs() < 1e-12, "{polygon:?}");
+            assert!(triangles.iter().all(|[a, b, c]| (*b - *a).perp_dot(*c - *a) > 0.0));
+            assert_eq!(polygon.edges().count(), polygon.edge_count());
+            assert!(polygon.triangles(3).is_none());
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Solids that are made of triangles: meshes, and polygons that are extruded.
+//!
+//! Their surface is known as it is: nothing has to be measured, and nothing is in doubt.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec2, DVec3};
+use rvachev_field::{Patch, Patches, Polygon};
+
+use crate::eval::{Accuracy, Surface};
+use crate::measure::facets::Facets;
+use crate::solid::{Node, Sweep};
+use crate::{Angle, Bounds, Cancelled, Caps, Extrusion, Profile, Run, Solid};
+
+/// Of polygons that take more triangles the surface is measured.
+const MOST: usize = 1 << 18;
+
+/// What counts as touching, as a part of the size.
+const TOUCHING: f64 = 1e-4;
+
+/// The triangles of a solid, kept with it; nothing if it is not made of such.
+struct Kept(Option<Triangles>);
+
+/// The surface that they are where the solid was moved to, kept with that.
+struct There(Arc<Surface>);
+
+/// Triangles that are the surface of a solid.
+struct Triangles {
+    all: Vec<[DVec3; 3]>,
+    /// How far the surface may be off them.
+    rounding: f64,
+}
+
+/// The surface of a solid, if triangles are exactly that.
+pub(super) fn surface(solid: &Solid, run: &Run) -> Result<Option<Arc<Surface>>, Cancelled> {
+    if let Some(there) = solid.shelf().find(|_: &There| true) {
+        return Ok(Some(there.0.clone()));
+    }
+    let (still, map) = at_rest(solid);
+    if !matches!(still.node(), Node::Leaf(_) | Node::Swept { .. }) {
+        return Ok(None);
+    }
+    let kept = match still.shelf().find(|_: &Kept| true) {
+        Some(kept) => kept,
+        None => {
+            let kept = Arc::new(Kept(triangles(still, run)?));
+            still.shelf().keep(kept.clone());
+            kept
+        }
+    };
+    let Kept(Some(Triangles { all, rounding })) = &*kept else { return Ok(None) };
+    let is_turned = map.matrix3.determinant() < 0.0;
+    let place = |triangle: &[DVec3; 3]| {
+        let [a, b, c] = triangle.map(|p| map.transform_point3(p));
+        Patch::flat(if is_turned { [a, c, b] } else { [a, b, c] })
+    };
+    let patches = Patches::new(&all.iter().map(place).collect::<Vec<Patch>>(), run)?;
+    let stretch = map.matrix3.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
+    let bounds = patches.bounds();
+    let far = bounds.min.abs().max(bounds.max.abs()).max_element();
+    // Patches are kept in single precision, about their middle.
+    let rounding =
+        stretch * rounding + 4.0 * f64::from(f32::EPSILON) * bounds.longest_side() + 4.0 * f64::EPSILON * far;
+    // What goes no deeper than this only touches, as where surfaces are measured.
+    let touching = Accuracy::of_surface(rounding.max(TOUCHING * bounds.longest_side()), rounding);
+    let surface = Arc::new(Surface::new(Arc::new(patches), touching, None).in_doubt(rounding, Vec::new()));
+    solid.shelf().keep(Arc::new(There(surface.clone())));
+    Ok(Some(surface))
+}
+
+/// What was moved to make a solid, and how.
+fn at_rest(solid: &Solid) -> (&Solid, DAffine3) {
+    let (mut still, mut map) = (solid, DAffine3::IDENTITY);
+    loop {
+        still = match still.node() {
+            Node::Affine { operand, forward, .. } => {
+                map *= *forward;
+                operand
+            }
+            Node::Named { operand, .. } | Node::Painted { operand, .. } => operand,
+            _ => return (still, map),
+        };
+    }
+}
+
+fn triangles(still: &Solid, run: &Run) -> Result<Option<Triangles>, Cancelled> {
+    match still.node() {
+        Node::Leaf(field) => {
+            let found = Facets::of(&**field, &DAffine3::IDENTITY, run)?;
+            Ok(found.map(|found| Triangles { rounding: found.rounding(), all: found.triangles }))
+        }
+        Node::Swept { profile, sweep: Sweep::Extrude(extrusion), .. } => Ok(extruded(profile, extrusion)),
+        _ => Ok(None),
+    }
+}
+
+/// The walls and the ends of a polygon that is extruded straight.
+fn extruded(profile: &Profile, extrusion: &Extrusion) -> Option<Triangles> {
+    let Extrusion { height, twist, scale, caps } = *extrusion;
+    let (flat, map) = at_rest(&profile.0);
+    let Node::Leaf(field) = flat.node() else { return None };
+    let polygon = (&**field as &dyn std::any::Any).downcast_ref::<Polygon>()?;
+    let is_straight = twist == Angle::ZERO && scale == 1.0 && caps == Caps::Flat;
+    let is_flat = map.transform_vector3(DVec3::Z).truncate() == DVec2::ZERO;
+    if !is_straight || !is_flat {
+        return None;
+    }
+    let half = 0.5 * height;
+    let at = |p: DVec2, z: f64| map.transform_point3(p.extend(0.0)).truncate().extend(z);
+    // What is mirrored in the plane is turned inside out.
+    let is_turned = map.matrix3.x_axis.truncate().perp_dot(map.matrix3.y_axis.truncate()) < 0.0;
+    let outward = |[a, b, c]: [DVec3; 3]| if is_turned { [a, c, b] } else { [a, b, c] };
+    let wall = |[from, to]: [DVec2; 2]| {
+        let [a, b, c, d] = [at(from, -half), at(to, -half), at(to, half), at(from, half)];
+        [outward([a, b, c]), outward([a, c, d])]
+    };
+    let mut all: Vec<[DVec3; 3]> = polygon.edges().flat_map(wall).collect();
+    for [a, b, c] in polygon.triangles(MOST)? {
+        all.push(outward([at(a, half), at(b, half), at(c, half)]));
+        all.push(outward([at(a, -half), at(c, -half), at(b, -half)]));
+    }
+    let bounds = Bounds::from_points(all.iter().flatten().copied());
+    let far = bounds.min.abs().max(bounds.max.abs()).max_element();
+    (!all.is_empty()).then_some(Triangles { all, rounding: 16.0 * f64::EPSILON * far })
+}
