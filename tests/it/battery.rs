@@ -73,8 +73,8 @@ pub struct Most {
     pub slow: f64,
 }
 
-const NUMBERS: Most = Most { refused: 0.1, slow: 0.01 };
-const SHAPES: Most = Most { refused: 0.1, slow: 0.08 };
+const NUMBERS: Most = Most { refused: 0.15, slow: 0.01 };
+const SHAPES: Most = Most { refused: 0.15, slow: 0.08 };
 
 /// So many are many.
 const MANY: u32 = 100;
