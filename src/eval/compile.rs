@@ -213,7 +213,7 @@ impl<'e> Compiler<'e> {
         let (field, surface) = (program(built.field)?, program(built.surface)?);
         let mut bounds = if built.sides.inside.is_empty() { Bounds::EMPTY } else { built.sides.inside };
         if !bounds.is_empty() && (!bounds.is_finite() || is_loose(&surface)) {
-            bounds = extent(&surface, &bounds, run)?;
+            bounds = extent(&surface, &bounds, &run.stage(WALK, 1.0))?;
         }
         let unbounded = if bounds.is_finite() { String::new() } else { unbounded };
         let palette = Palette::new(surface.clone(), coats);

@@ -81,6 +81,12 @@ pub(super) fn is_loose(program: &Program) -> bool {
         && program.nodes.iter().all(is_formula)
 }
 
+/// What asking about a box takes, in ordinary leaves.
+pub(super) fn toll(program: &Program) -> usize {
+    let searched = program.scene.leaves.iter().filter(|leaf| !leaf.field.is_formula()).count();
+    program.nodes.len() + program.cost() + 4 * program.frames.len() + SEARCHED * searched
+}
+
 /// The box of what is inside in any of the parts.
 pub(super) fn moved_in(program: &Program, mut parts: Vec<Part>, run: &Run) -> Result<Bounds, Cancelled> {
     let mut hull = parts.iter().fold(Bounds::EMPTY, |hull, part| hull.union(&part.bounds));
@@ -89,16 +95,16 @@ pub(super) fn moved_in(program: &Program, mut parts: Vec<Part>, run: &Run) -> Re
     if leaves().any(|leaf| !leaf.field.is_formula() && !leaf.bounds.is_finite() && !leaf.bounds.is_empty()) {
         return Ok(hull);
     }
-    let searched = leaves().filter(|leaf| !leaf.field.is_formula()).count();
-    let each = program.nodes.len() + program.cost() + 4 * program.frames.len() + SEARCHED * searched;
+    let most = (EFFORT / toll(program)).min(MOST);
     for axis in 0..3 {
-        for is_top in [false, true] {
+        for (nth, is_top) in [false, true].into_iter().enumerate() {
+            run.report((2 * axis + nth) as f64 / 6.0);
             if hull.is_empty() {
                 return Ok(Bounds::EMPTY);
             }
             let direction = if is_top { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
             let mut side = Side { axis, direction, width: hull.size(), reached: f64::NEG_INFINITY };
-            let farthest = side.farthest(&mut parts, (EFFORT / each).min(MOST), run)?;
+            let farthest = side.farthest(&mut parts, most, run)?;
             if is_top {
                 hull.max[axis] = hull.max[axis].min(farthest);
             } else {

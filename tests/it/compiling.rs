@@ -5,9 +5,10 @@ use std::sync::{Arc, Mutex};
 
 use glam::DVec2;
 use rvachev::{
-    Bounds, CancelToken, Cancelled, Gielis, ParamError, Profile, Progress, RFunction, Run, Solid, Supershape,
+    Bounds, CancelToken, Cancelled, Gielis, Interval, ParamError, Profile, Progress, RFunction, Run, Solid, Supershape,
     error::PrepareError,
     field::{Field, Real},
+    rad,
 };
 
 /// A run that notes reports, and is cancelled once one is above `end`.
@@ -118,4 +119,57 @@ fn shapes_that_share_their_curves_are_equal_whether_used_or_not() {
     assert_eq!(used, shape(6));
     assert_ne!(used, shape(5));
     assert_eq!(Solid::from(used), Solid::from(shape(6)));
+}
+
+/// A ball that counts how often it is asked for a range.
+#[derive(Debug, Default)]
+struct Asked(Arc<AtomicUsize>);
+
+impl Field for Asked {
+    fn name(&self) -> &'static str {
+        "asked ball"
+    }
+
+    #[inline(always)]
+    fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+        -(x.square() + y.square() + z.square()).sqrt() + 1.0
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds::new([-1.0; 3], [1.0; 3])
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Ok(())
+    }
+
+    fn range(&self, region: [Interval; 3]) -> Interval {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        self.eval(region)
+    }
+}
+
+/// A level has the box that is found by asking, and each question to many copies takes long.
+#[test]
+fn the_box_of_many_copies_takes_few_questions_and_tells_how_far_it_is() {
+    let make = |asked: Asked| {
+        let part = Solid::new(asked).intersection(Solid::cuboid([1.5; 3]), RFunction::Alpha(-0.9));
+        let copies = part.rotate_x(rad(0.4)).repeat([4; 3], [3.6; 3]).level(0.2);
+        copies.rotate_y(rad(-0.5)).repeat([4; 3], [3.7, 1.6, 1.7]).level(0.2).rotate_x(rad(0.4))
+    };
+    let asked = Asked::default();
+    let count = asked.0.clone();
+    let (reports, run) = noted(f64::INFINITY);
+    make(asked).prepare(&run).unwrap();
+    let (count, reports) = (count.load(Ordering::Relaxed), reports.lock().unwrap());
+    let late = reports.iter().filter(|at| **at > 0.7).count();
+    println!("{count} questions, {} reports, {late} of them late", reports.len());
+    assert!(count < 400_000, "{count} questions");
+    assert!(late > 5 && reports.is_sorted(), "{reports:?}");
+    let asked = Asked::default();
+    let early = asked.0.clone();
+    let (_, run) = noted(0.75);
+    assert_eq!(make(asked).prepare(&run), Err(CANCELLED));
+    let early = early.load(Ordering::Relaxed);
+    assert!(4 * early < 3 * count, "cancelled after {early} questions of {count}");
 }

@@ -14,8 +14,16 @@ use crate::support::{Random, frame_of, random_box, random_leaf, random_solid, sa
 
 /// Checks `region` of a program against samples; the text is what contradicts it.
 pub fn contradiction(full: &Program, bounds: &Bounds, region: &Region, points: &[DVec3]) -> Option<String> {
-    for &p in points {
-        let value = full.value(p);
+    contradicted(bounds, region, points.iter().map(|p| (*p, full.value(*p))))
+}
+
+/// The same by the values of the program at the samples.
+pub fn contradicted(
+    bounds: &Bounds,
+    region: &Region,
+    samples: impl IntoIterator<Item = (DVec3, f64)>,
+) -> Option<String> {
+    for (p, value) in samples {
         let wrong = match region {
             Region::Inside => value <= 0.0,
             Region::Outside => value > 0.0,
