@@ -1,5 +1,7 @@
 //! Something and its complement.
 
+use std::collections::HashSet;
+
 use rvachev_field::{Op, Rule};
 
 use super::program::{Edge, Kind, Program};
@@ -17,7 +19,8 @@ impl Program {
             let (narrow, wide) = if *op == Op::And { (0, 1) } else { (1, 0) };
             // What cannot hold beside the other operands: the complement of one of them, or what is
             // made of nothing else.
-            let has = |edge: Edge| list.contains(&edge);
+            let all: HashSet<Edge> = list.iter().copied().collect();
+            let has = |edge: Edge| all.contains(&edge);
             let is_against = |edge: &Edge| has(edge.flip_if(true)) || self.parts_against(*edge, *op, has);
             let mut own = [false; 2];
             own[narrow] = list.iter().any(|edge| of(edge, narrow) || is_against(edge));

@@ -167,13 +167,17 @@ fn watch() -> Sender<String> {
     const LONG: Duration = Duration::from_secs(20);
     let (watch, begun) = channel::<String>();
     std::thread::spawn(move || {
-        let (mut now, mut patience, mut start) = (String::new(), LONG, ProcessTime::now());
+        let (mut now, mut patience) = (String::new(), LONG);
+        let (mut start, mut begin) = (ProcessTime::now(), Instant::now());
         loop {
             match begun.recv_timeout(patience) {
-                Ok(next) => (now, patience, start) = (next, LONG, ProcessTime::now()),
+                Ok(next) => {
+                    (now, patience) = (next, LONG);
+                    (start, begin) = (ProcessTime::now(), Instant::now());
+                }
                 Err(RecvTimeoutError::Disconnected) => return,
-                // What waits for others does not hang.
-                Err(RecvTimeoutError::Timeout) if start.elapsed() < patience => {}
+                // What waits for other processes does not hang; what waits for itself does.
+                Err(RecvTimeoutError::Timeout) if start.elapsed() < patience && begin.elapsed() < 20 * HANGS => {}
                 Err(RecvTimeoutError::Timeout) if patience == LONG => {
                     println!("takes long: {now}");
                     patience = HANGS;

@@ -231,8 +231,9 @@ impl<'a> Search<'a> {
                     let by_value = if self.is_gentle { self.by_value(piece, enough) } else { f64::NEG_INFINITY };
                     // Of flat patches the triangle is asked at once.
                     let mut nearest = None;
+                    let is_flat = piece.off(patches) <= self.from.fineness();
                     let place = self.place(enough, piece.middle(), by_value, || {
-                        nearest = others.approach(piece.points);
+                        nearest = others.approach(piece.points).filter(|_| is_flat);
                         if let Some(Approach { distance, .. }) = nearest {
                             return distance - piece.off(patches);
                         }

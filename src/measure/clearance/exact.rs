@@ -89,21 +89,21 @@ fn triangles(still: &Solid, run: &Run) -> Result<Option<Triangles>, Cancelled> {
             let found = Facets::of(&**field, &DAffine3::IDENTITY, run)?;
             Ok(found.map(|found| Triangles { rounding: found.rounding(), all: found.triangles }))
         }
-        Node::Swept { profile, sweep: Sweep::Extrude(extrusion), .. } => Ok(extruded(profile, extrusion)),
+        Node::Swept { profile, sweep: Sweep::Extrude(extrusion), .. } => extruded(profile, extrusion, run),
         _ => Ok(None),
     }
 }
 
 /// The walls and the ends of a polygon that is extruded straight.
-fn extruded(profile: &Profile, extrusion: &Extrusion) -> Option<Triangles> {
+fn extruded(profile: &Profile, extrusion: &Extrusion, run: &Run) -> Result<Option<Triangles>, Cancelled> {
     let Extrusion { height, twist, scale, caps } = *extrusion;
     let (flat, map) = at_rest(&profile.0);
-    let Node::Leaf(field) = flat.node() else { return None };
-    let polygon = (&**field as &dyn std::any::Any).downcast_ref::<Polygon>()?;
+    let Node::Leaf(field) = flat.node() else { return Ok(None) };
+    let Some(polygon) = (&**field as &dyn std::any::Any).downcast_ref::<Polygon>() else { return Ok(None) };
     let is_straight = twist == Angle::ZERO && scale == 1.0 && caps == Caps::Flat;
     let is_flat = map.transform_vector3(DVec3::Z).truncate() == DVec2::ZERO;
     if !is_straight || !is_flat {
-        return None;
+        return Ok(None);
     }
     let half = 0.5 * height;
     let at = |p: DVec2, z: f64| map.transform_point3(p.extend(0.0)).truncate().extend(z);
@@ -115,11 +115,12 @@ fn extruded(profile: &Profile, extrusion: &Extrusion) -> Option<Triangles> {
         [outward([a, b, c]), outward([a, c, d])]
     };
     let mut all: Vec<[DVec3; 3]> = polygon.edges().flat_map(wall).collect();
-    for [a, b, c] in polygon.triangles(MOST)? {
+    let Some(ends) = polygon.triangles(MOST, run)? else { return Ok(None) };
+    for [a, b, c] in ends {
         all.push(outward([at(a, half), at(b, half), at(c, half)]));
         all.push(outward([at(a, -half), at(c, -half), at(b, -half)]));
     }
     let bounds = Bounds::from_points(all.iter().flatten().copied());
     let far = bounds.min.abs().max(bounds.max.abs()).max_element();
-    (!all.is_empty()).then_some(Triangles { all, rounding: 16.0 * f64::EPSILON * far })
+    Ok((!all.is_empty()).then_some(Triangles { all, rounding: 16.0 * f64::EPSILON * far }))
 }

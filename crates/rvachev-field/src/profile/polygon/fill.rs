@@ -9,9 +9,13 @@
 use std::collections::HashMap;
 
 use glam::DVec2;
+use rvachev_num::{Cancelled, Run};
 
 use super::Polygon;
 use super::edge::Edge;
+
+/// For each triangle so many edges may be gone through.
+const EFFORT: usize = 64;
 
 impl Polygon {
     /// The edges of the border, from corner to corner, with the inside on the left.
@@ -20,9 +24,12 @@ impl Polygon {
     }
 
     /// Triangles that fill it, counter-clockwise, whose corners may be on sides of others; nothing
-    /// if they are more than `most`.
-    #[must_use]
-    pub fn triangles(&self, most: usize) -> Option<Vec<[DVec2; 3]>> {
+    /// if they are more than `most`, or take much longer to find than so many do.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if the run is stopped.
+    pub fn triangles(&self, most: usize, run: &Run) -> Result<Option<Vec<[DVec2; 3]>>, Cancelled> {
         let mut edges: Vec<&Edge> = self.border().edges.iter().filter(|edge| edge.start.y != edge.end.y).collect();
         let low = |edge: &Edge| edge.start.y.min(edge.end.y);
         edges.sort_by(|a, b| low(a).total_cmp(&low(b)));
@@ -31,7 +38,9 @@ impl Polygon {
         heights.dedup();
         let mut rest = edges.into_iter().peekable();
         let (mut here, mut open, mut found): (Vec<&Edge>, Vec<Trapezium<'_>>, _) = (Vec::new(), Vec::new(), Vec::new());
+        let mut passed = 0;
         for from in heights.iter().copied() {
+            run.check()?;
             here.retain(|edge| edge.start.y.max(edge.end.y) > from);
             while let Some(edge) = rest.next_if(|edge| low(edge) <= from) {
                 here.push(edge);
@@ -51,11 +60,12 @@ impl Polygon {
                 }
             }
             open = next;
-            if found.len() > most {
-                return None;
+            passed += here.len();
+            if found.len() > most || passed > EFFORT.saturating_mul(most) {
+                return Ok(None);
             }
         }
-        Some(found)
+        Ok(Some(found))
     }
 }
 
@@ -101,12 +111,24 @@ mod tests {
             [r * angle.cos(), r * angle.sin()]
         });
         for polygon in [Polygon::new([frame, window]), Polygon::new([star.collect::<Vec<_>>()])] {
-            let triangles = polygon.triangles(100).unwrap();
+            let triangles = polygon.triangles(100, &Run::default()).unwrap().unwrap();
             let twice: f64 = triangles.iter().map(|[a, b, c]| (*b - *a).perp_dot(*c - *a)).sum();
             assert!((0.5 * twice - polygon.area()).abs() < 1e-12, "{polygon:?}");
             assert!(triangles.iter().all(|[a, b, c]| (*b - *a).perp_dot(*c - *a) > 0.0));
             assert_eq!(polygon.edges().count(), polygon.edge_count());
-            assert!(polygon.triangles(3).is_none());
+            assert!(polygon.triangles(3, &Run::default()).unwrap().is_none());
         }
+    }
+    #[test]
+    fn combs_whose_teeth_end_at_heights_of_their_own_are_given_up_and_cancelled() {
+        let teeth = 2000;
+        let tooth = |k: i32| [[f64::from(k), 0.0], [f64::from(k) + 0.5, 10.0 + f64::from(k) / 1e3]];
+        let mut comb: Vec<[f64; 2]> = (0..teeth).flat_map(tooth).collect();
+        comb.extend([[f64::from(teeth), 0.0], [f64::from(teeth), -1.0], [0.0, -1.0]]);
+        let comb = Polygon::new([comb]);
+        assert!(comb.triangles(1 << 14, &Run::default()).unwrap().is_none());
+        let run = Run::default();
+        run.cancel.cancel();
+        assert_eq!(comb.triangles(1 << 20, &run), Err(Cancelled));
     }
 }
