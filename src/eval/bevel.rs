@@ -22,9 +22,6 @@ use rvachev_num::symbol::Symbol;
 const TURN: f64 = 1e-4;
 const TURN_OF_LANES: f64 = 1e-2;
 
-/// How far off T may be at a point, in proportion to the lengths about it.
-const ROUNDING: f64 = 1e-12;
-
 /// A value and its gradient.
 pub(super) type Sample = (f64, DVec3);
 
@@ -93,8 +90,9 @@ impl Bevel {
         let sides = [0, 1].map(|i| self.operands[i].evaluate(here, &mut Vec::new()) * self.signs[i]);
         let slopes = self.chamfer.slopes(sides.each_ref());
         let coarse = self.chamfer.range(values, sides.map(|side| side.d));
-        let centre = self.chamfer.height(Parts::of(self.samples(zone.centre)).as_ref());
-        let rounding = ROUNDING * (zone.reach() + self.chamfer.leg + centre.abs());
+        let parts = Parts::of(self.samples(zone.centre));
+        let centre = self.chamfer.height(parts.as_ref());
+        let rounding = self.chamfer.rounding(parts.as_ref(), zone.reach() + centre.abs());
         let height = mean_value_range(zone, Interval::around(centre, rounding), slopes, coarse);
         Face { height, slopes, sides }
     }

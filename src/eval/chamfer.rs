@@ -44,6 +44,12 @@ use rvachev_field::VALUE_LIMIT;
 /// At edges sharper than this (16°) the face stays as it is there.
 const SHARPEST: f64 = -0.96;
 
+/// Where k is less both operands are one plane, and T is as steady as they are.
+const EVEN: f64 = 1e-6;
+
+/// How far off T may be at a point, in proportion to the lengths about it.
+const ROUNDING: f64 = 1e-12;
+
 /// Gradients shorter than this tell no direction.
 const LEVEL: f64 = 1e-12;
 
@@ -98,13 +104,21 @@ impl Chamfer {
         ((parts.distances[0] + parts.distances[1]) / m + self.leg * k).min(VALUE_LIMIT)
     }
 
+    /// How far off the value may be at a point so far from the origin.
+    pub(super) fn rounding(self, parts: Option<&Parts>, reach: f64) -> f64 {
+        let Some(parts) = parts else { return 0.0 };
+        let least = parts.lengths[0].min(parts.lengths[1]).min(1.0);
+        let (k, _) = factors(parts.cosine);
+        ROUNDING * (reach / least + self.leg / k.max(EVEN))
+    }
+
     /// The gradient of T; `turns[i][j]` is the derivative of operand i's gradient along the unit
     /// gradient of operand j.
     pub(super) fn slope(self, parts: &Parts, turns: [[DVec3; 2]; 2]) -> DVec3 {
         let Parts { normals, lengths, distances, cosine } = *parts;
         let (k, m) = factors(cosine);
         let turns = [0, 1].map(|i| turns[i].map(|turn| turn / lengths[i]));
-        let steady = cosine <= SHARPEST || k < 1e-6;
+        let steady = cosine <= SHARPEST || k < EVEN;
         let turning =
             if steady { DVec3::ZERO } else { turns[0][1] - cosine * turns[0][0] + turns[1][0] - cosine * turns[1][1] };
         let sum = (distances[0] + distances[1]) / m;
@@ -155,7 +169,8 @@ impl Chamfer {
         let sum = (distances[0] + distances[1]) / m;
         let along = -(Interval::point(0.25 * self.leg) / k) - sum / m.square();
         // At sharper edges the face is as it is there.
-        let along = if cosine.lo() > SHARPEST { along } else { along.hull(Interval::ZERO) };
+        let is_told = cosine.lo() > SHARPEST && k.lo() >= EVEN;
+        let along = if is_told { along } else { along.hull(Interval::ZERO) };
         [0, 1, 2].map(|axis| (own[0][axis] + own[1][axis]) / m + along.times(turning[axis]))
     }
 }

@@ -283,7 +283,10 @@ impl Real for Jet {
             p => Interval::point(1.0) / size.pow(-p),
         };
         let slope = power(p - 1.0) * p;
-        self.chain(self.v.pow(p), self.v.select(slope, -slope), power(p - 2.0) * (p * (p - 1.0)))
+        // At a cusp the slope jumps from one end to the other.
+        let is_cusp = p < 1.0 && self.v.contains(0.0);
+        let bend = if is_cusp { Interval::ALL } else { power(p - 2.0) * (p * (p - 1.0)) };
+        self.chain(self.v.pow(p), self.v.select(slope, -slope), bend)
     }
 
     fn sin_cos(self) -> (Jet, Jet) {
@@ -314,7 +317,14 @@ impl Real for Jet {
         } else if self.v.hi() < 0.0 {
             neg
         } else {
-            nonneg.either(&neg, nonneg.v.hull(neg.v))
+            // What is chosen jumps wherever this changes its sign, constants as well.
+            let mut jet = nonneg.either(&neg, nonneg.v.hull(neg.v));
+            for (h, [i, j]) in jet.h.iter_mut().zip(PAIRS) {
+                if nonneg != neg && (self.d[i] != ZERO || self.d[j] != ZERO) {
+                    *h = Interval::ALL;
+                }
+            }
+            jet
         }
     }
 
@@ -371,6 +381,9 @@ fn norm_bends([a, b]: [Interval; 2], v: Interval, [alpha, beta]: [Interval; 2], 
         Norm::Max if b.abs().lo() > a.abs().hi() => [ZERO, ZERO, kink(b)],
         Norm::Max => [Interval::ALL; 3],
         Norm::Euclid => [beta.square() / v, -(alpha * beta) / v, alpha.square() / v],
+        Norm::P { p, .. } | Norm::Steep { p, .. } if p < 1.0 && (a.contains(0.0) || b.contains(0.0)) => {
+            [Interval::ALL; 3]
+        }
         Norm::P { p, .. } | Norm::Steep { p, .. } => {
             let share = Interval::new(0.0, 1.0);
             let power = |slope: Interval, exponent: f64| match exponent {
@@ -384,5 +397,36 @@ fn norm_bends([a, b]: [Interval; 2], v: Interval, [alpha, beta]: [Interval; 2], 
             let factor = Interval::point(p - 1.0) / v;
             [steep(alpha) * part(beta) * factor, -(alpha * beta * factor), steep(beta) * part(alpha) * factor]
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x from −1 to 1, y about 1 and nothing.
+    fn variables() -> [Jet; 3] {
+        Jet::point([Interval::new(-1.0, 1.0), Interval::new(1.0, 1.1), ZERO])
+    }
+
+    #[test]
+    fn cusps_bend_without_bound() {
+        let [x, y, _] = variables();
+        // Of √|x| the slope is −½ at −1 and ½ at 1.
+        assert_eq!(x.pow(0.5).bend(0, 0), Interval::ALL);
+        assert_eq!(x.pow(-0.5).bend(0, 0), Interval::ALL);
+        assert!(x.pow(3.0).bend(0, 0).contains(6.0) && x.pow(3.0).bend(0, 0).hi() < 6.1);
+        assert_eq!(x.norm(y, Norm::of_exponent(4.0)).bend(0, 0), Interval::ALL);
+    }
+
+    #[test]
+    fn what_is_chosen_by_a_sign_jumps_where_it_changes() {
+        let [x, y, _] = variables();
+        let sign = x.select(x.lift(1.0), x.lift(-1.0));
+        assert_eq!((x * sign).bend(0, 0), Interval::ALL);
+        // Of y it is not chosen, and equal ones do not jump.
+        assert_eq!(sign.bend(1, 1), ZERO);
+        assert_eq!(y.select(x.lift(1.0), x.lift(-1.0)).bend(0, 0), ZERO);
+        assert_eq!(x.select(y, y).bend(0, 0), ZERO);
     }
 }
