@@ -23,8 +23,8 @@
 //! nothing to search for, so T goes on steadily wherever the gradients do. Operands that face each
 //! other closer than 0.28 l are bridged.
 //!
-//! With n and o the unit gradients, and A and B the matrices of the operands' second derivatives, each
-//! divided by the length of its gradient,
+//! With n and o the unit gradients, and A and B the matrices of the operands' second derivatives,
+//! each divided by the length of its gradient,
 //!
 //! ```text
 //!     ∇X = n − X·A n      ∇c = A (o − c n) + B (n − c o)

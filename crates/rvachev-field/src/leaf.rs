@@ -152,8 +152,8 @@ pub trait Field: Debug + Send + Sync + 'static {
     }
 
     /// Ranges of the value, of its derivatives and of theirs, over a box whose sides are given with
-    /// derivatives of their own: how much normals turn in it, which chamfers between leaves ask. The
-    /// default runs the formula on these numbers.
+    /// derivatives of their own: how much normals turn in it, which chamfers between leaves ask.
+    /// The default runs the formula on these numbers.
     fn jet(&self, p: [Jet; 3]) -> Jet {
         self.jet_over(p)
     }

@@ -95,8 +95,9 @@ impl Solid {
     ///
     /// Closed meshes whose triangles do not cross, and polygons that are extruded straight, wherever
     /// they were moved to, are their triangles: nothing is measured of them, and the tolerance is a
-    /// thousandth of the distance and what single precision leaves open, some 10⁻⁶ of the sizes. Where
-    /// they touch or overlap it is 2·10⁻⁴ of the sizes: what goes no deeper than half of that touches.
+    /// thousandth of the distance and what single precision leaves open, some 10⁻⁶ of the sizes.
+    /// Where they touch or overlap it is 2·10⁻⁴ of the sizes: what goes no deeper than half of that
+    /// touches.
     ///
     /// That no points are nearer is told of the surface of one of the solids, as it was measured,
     /// and of the other solid itself if its value changes by no more than lengths do, as that of

@@ -35,8 +35,8 @@ pub fn cheap(seed: u64) -> Option<Solid> {
 
 /// The same with measured lengths in this part.
 pub fn made(seed: u64, measured: f64) -> Option<Solid> {
-    // Of a number that has nothing to do with that of the next seed: sources whose numbers differ by
-    // the step from one to the next go through the same ones.
+    // Of a number that has nothing to do with that of the next seed: sources whose numbers differ
+    // by the step from one to the next go through the same ones.
     let mut random = Random::new(Random::new(seed).bits());
     if random.chance(measured) {
         let depth = 1 + random.below(DEEP - 1);
