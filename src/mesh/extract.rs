@@ -409,8 +409,8 @@ impl<'a, S: Sampler> Worker<'a, S> {
         let step = self.lattice.step();
         let of_block = |(n, (part, why)): (usize, (&Part, Option<Suspicion>))| {
             let torn = || match torn_nodes(part, [&positions, &normals], step) {
-                0 => None,
-                count => Some(Suspicion::Torn(count)),
+                [0, 0] => None,
+                counts => Some(Suspicion::Torn(counts)),
             };
             let why = why.or_else(|| if watches { torn() } else { None });
             why.map(|why| Suspect { number: start + n, why })

@@ -77,6 +77,13 @@ impl Signs {
         any != 0 && all != ALL
     }
 
+    /// How many nodes whose upward edges the block owns are outside and inside.
+    pub(super) fn counts(&self) -> [u32; 2] {
+        let rows = (0..BLOCK).flat_map(|k| (0..BLOCK).map(move |j| self.row(j, k) & OWNED_BITS));
+        let inside = rows.map(u16::count_ones).sum();
+        [(BLOCK * BLOCK * BLOCK) as u32 - inside, inside]
+    }
+
     /// The nodes of a row that differ in sign from both their neighbours along x, y and z, as bits:
     /// of those whose two edges there the block owns.
     #[inline(always)]

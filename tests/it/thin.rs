@@ -277,6 +277,32 @@ fn what_deformations_make_thin_is_told() {
     }
 }
 
+/// The walls of a small body: few nodes are in them, in few blocks.
+#[test]
+fn torn_walls_of_small_bodies_are_told() {
+    let mut random = Random::new(5);
+    let bodies = [
+        Solid::ellipsoid([5.0, 1.0, 2.0]),
+        Solid::wedge([14.5, 1.0, 2.0]),
+        Solid::cuboid([3.0, 2.0, 4.0]),
+        Solid::torus(2.0, 1.0),
+        Solid::cone(1.0, 0.4, 3.0),
+        Solid::superellipsoid([2.0, 1.0, 1.5], 0.4, 1.3),
+    ];
+    for body in &bodies {
+        for cells in [10, 16, 24, 40] {
+            let turned = body.shell(0.1).rotate(random.rotation()).translate(random.vector(-0.5, 0.5));
+            let volume = |cell: CellSize| {
+                let mesh = turned.mesh(&MeshSettings { cell, ..MeshSettings::default() }).unwrap();
+                (mesh.check().volume, mesh.possibly_lost())
+            };
+            let (right, _) = volume(CellSize::Length(0.05));
+            let (found, lost) = volume(CellSize::LongestSide(cells));
+            assert!(lost > 0 || (found / right - 1.0).abs() < 0.1, "{turned} at {cells}: {found} for {right}");
+        }
+    }
+}
+
 fn settings(cell: f64) -> MeshSettings {
     MeshSettings { cell: CellSize::Length(cell), ..MeshSettings::default() }
 }

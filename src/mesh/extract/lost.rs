@@ -16,8 +16,9 @@
 //!    until it has no surface, or until it is a cell: that one is lost, unless it is entered once
 //!    along a cone of directions, as a blunt tip is.
 //! 2. *Torn*: a block with many nodes that have a root on either side along an axis, with opposite
-//!    normals, less than [`WALL`] cells apart; or one of some, beside others. The edge of an acute
-//!    wedge has such nodes in a line, a torn wall all over.
+//!    normals, less than [`WALL`] cells apart; or one in and about which most nodes of their sign
+//!    are of this kind. The edge of an acute wedge has such nodes in a line before its others, a
+//!    torn wall, however small, has no others.
 //! 3. *Bored*: a block with a crossing that holds a convex leaf thinner than [`BORE`] cells.
 //!
 //! Intervals are budgeted: a block that is not decided in its share of them is counted. So hidden
@@ -53,9 +54,6 @@ const WALL: f32 = 1.1;
 const OPPOSITE: f32 = -0.8;
 /// So many nodes between opposite sides tell of a torn wall in a block.
 const TORN: u32 = 32;
-/// So many do in one that has [`BESIDE`] others of the kind next to it.
-const FEW: u32 = 4;
-const BESIDE: usize = 8;
 /// A convex leaf that is thinner may pass between nodes, in cells.
 pub(in crate::mesh) const BORE: f64 = 1.0;
 /// For how many blocks there is one narrowing, and how many more there are: intervals are to take
@@ -90,11 +88,11 @@ fn steepest(values: &[f32; NODES]) -> f32 {
     x.max(y).max(most(SIDE * SIDE, &|_| true))
 }
 
-/// How many nodes of a block there are between opposite sides of a wall, given the vertices of the
-/// batch.
-pub(super) fn torn_nodes(part: &Part, [positions, normals]: [&[Vec3]; 2], step: f64) -> u32 {
+/// How many nodes of a block there are between opposite sides, of a gap and of a wall, given the
+/// vertices of the batch.
+pub(super) fn torn_nodes(part: &Part, [positions, normals]: [&[Vec3]; 2], step: f64) -> [u32; 2] {
     let signs = &part.signs;
-    let mut count = 0;
+    let mut counts = [0; 2];
     for k in 0..BLOCK {
         for j in 0..BLOCK {
             let single = signs.single(j, k);
@@ -113,11 +111,11 @@ pub(super) fn torn_nodes(part: &Part, [positions, normals]: [&[Vec3]; 2], step: 
                     let across = (n - m).normalize_or_zero();
                     m.dot(n) < OPPOSITE && (positions[b] - positions[a]).dot(across).abs() < WALL * step as f32
                 };
-                count += u32::from((0..3).any(is_thin));
+                counts[usize::from(signs.row(j, k) >> i & 1)] += u32::from((0..3).any(is_thin));
             }
         }
     }
-    count
+    counts
 }
 
 /// All directions but none.
@@ -145,13 +143,22 @@ impl Parts<'_> {
     /// The numbers of the blocks that may have lost a feature, in ascending order.
     pub(super) fn lost<S: Sampler>(&self, sampler: &S, run: &Run) -> Result<Vec<usize>, Cancelled> {
         let suspects = &self.suspects;
-        let torn = |n: usize| match suspects.binary_search_by_key(&n, |suspect| suspect.number) {
-            Ok(at) => matches!(suspects[at].why, Suspicion::Torn(count) if count >= FEW),
-            Err(_) => false,
+        // Nodes between opposite sides, and all nodes, by their sign.
+        let nodes = |n: usize| {
+            let torn = match suspects.binary_search_by_key(&n, |suspect| suspect.number).map(|at| &suspects[at].why) {
+                Ok(&Suspicion::Torn(counts)) => counts,
+                _ => [0; 2],
+            };
+            [torn, self.part(n).signs.counts()]
         };
-        let is_torn = |n: usize, count: u32| {
-            let others = || directions().filter_map(|step| self.beside(n, step)).filter(|&other| torn(other)).count();
-            count >= TORN || count >= FEW && others() >= BESIDE
+        let is_torn = |n: usize, counts: [u32; 2]| {
+            let about = || {
+                let blocks = directions().filter_map(|step| self.beside(n, step)).chain([n]).map(nodes);
+                blocks.fold([[0; 2]; 2], |sum, of| [0, 1].map(|k| [0, 1].map(|sign| sum[k][sign] + of[k][sign])))
+            };
+            let is_most =
+                |[torn, all]: [[u32; 2]; 2]| (0..2).any(|sign| counts[sign] > 0 && 2 * torn[sign] > all[sign]);
+            counts[0] + counts[1] >= TORN || is_most(about())
         };
         // The cells of a hidden block that are far from all that is seen.
         let far = |n: usize, cells: &CellRows| {
@@ -178,7 +185,7 @@ impl Parts<'_> {
                         open.push((*number, left));
                     }
                 }
-                Suspicion::Torn(count) if is_torn(*number, *count) => lost.push(*number),
+                Suspicion::Torn(counts) if is_torn(*number, *counts) => lost.push(*number),
                 Suspicion::Torn(_) => {}
                 Suspicion::Bored => lost.push(*number),
             }

@@ -62,8 +62,8 @@ impl CellRows {
 pub(super) enum Suspicion {
     /// It has no crossing; these cells may have a surface by their samples.
     Hidden(Box<CellRows>),
-    /// So many nodes are between opposite sides.
-    Torn(u32),
+    /// So many nodes are between opposite sides, of a gap and of a wall.
+    Torn([u32; 2]),
     Bored,
 }
 
