@@ -23,7 +23,7 @@ const LEVEL: f64 = 0.01;
 /// Whether a ray leaves the solid by a hit into a face that operands share.
 pub(super) fn runs_on(ray: &Ray<'_>, hit: &Hit) -> bool {
     let small = ray.small();
-    hit.normal.dot(ray.direction) > 0.0 && ray.value(hit.distance + 4.0 * small) > -LEVEL * small
+    ray.value(hit.distance - 4.0 * small) > 0.0 && ray.value(hit.distance + 4.0 * small) > -LEVEL * small
 }
 
 /// The first crossing, given that which does not know of joints.

@@ -7,6 +7,7 @@
 
 mod accuracy;
 mod apart;
+mod around;
 mod bend;
 mod bevel;
 mod bracket;
@@ -48,6 +49,7 @@ mod rise;
 mod runs;
 mod sampled;
 mod scene;
+mod seamless;
 mod shares;
 mod sides;
 mod source;
@@ -70,6 +72,7 @@ pub use tape::{Evaluator, Gradients, Tape, UnequalSlices};
 /// To so many boxes a program is best narrowed in one go, if any of its leaves are dear.
 pub(crate) use rvachev_field::BOXES as BOXES_AT_ONCE;
 
+pub(crate) use around::{AROUND, BESIDE, ROUNDING};
 pub(crate) use bend::Bend;
 pub(crate) use bracket::Bracket;
 pub(crate) use bytes::Counted;

@@ -55,7 +55,8 @@ impl Blocks {
             side: lattice.step() * BLOCK as f64,
             blocks: lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32)),
         };
-        let found = surface_blocks(program, &grid, 0.0, run)?;
+        // Nodes are asked for with what is close about them.
+        let found = surface_blocks(program, &grid, lattice.close(), run)?;
         let cells = found.blocks.iter().map(|block| block.index.map(|i| i * BLOCK as u32)).collect();
         let numbers = found.blocks.iter().map(|block| block.program).collect();
         Ok(Blocks { cells, programs: Programs { numbers, all: found.programs }, exact: Vec::new() })
@@ -79,7 +80,7 @@ impl Blocks {
             let mut shared = None;
             for part in 0..8 {
                 let first = std::array::from_fn(|axis| 2 * block[axis] + (part >> axis & 1) * side);
-                let number = match whole.narrowed(&lattice.region(first, BLOCK)) {
+                let number = match whole.narrowed(&lattice.about(first, BLOCK)) {
                     Narrowed::Inside | Narrowed::Outside => continue,
                     Narrowed::Same => *shared.get_or_insert_with(|| push(&mut all, whole.clone())),
                     Narrowed::Simpler(program) => push(&mut all, program),
@@ -189,7 +190,7 @@ pub(super) fn exact_nodes(
     for (n, value) in out.iter_mut().enumerate() {
         let at = |axis: usize, stride: usize| block[axis] + (n / stride % SIDE) as u32;
         let p = lattice.node(at(0, 1), at(1, SIDE), at(2, SIDE * SIDE));
-        let exact = if limits.contains(p) { program.value(p) } else { -lattice.step() };
+        let exact = if limits.contains(p) { program.value_or_around(p, lattice.scale()) } else { -lattice.step() };
         *value = if exact > 0.0 { (exact as f32).max(f32::MIN_POSITIVE) } else { (exact as f32).min(0.0) };
     }
 }

@@ -27,7 +27,7 @@ pub(super) fn may_hide(
             if !cells.has_any(first, half) {
                 continue;
             }
-            let region = lattice.region(std::array::from_fn(|axis| block[axis] + first[axis] as u32), half);
+            let region = lattice.about(std::array::from_fn(|axis| block[axis] + first[axis] as u32), half);
             if ranges == 0 {
                 return true;
             }
@@ -37,6 +37,9 @@ pub(super) fn may_hide(
                 Narrowed::Same => shared.get_or_insert_with(|| program.clone()).clone(),
                 Narrowed::Simpler(simpler) => simpler,
             };
+            if simpler.is_seamless(&region) {
+                continue;
+            }
             if half > 1 {
                 open.push((first, half, simpler));
                 continue;

@@ -27,6 +27,8 @@ use glam::{DVec3, Vec3};
 
 use rvachev_num::Bounds;
 
+use crate::eval::BESIDE;
+
 /// The resolution of a mesh.
 ///
 /// The cell size that is used is the one asked for, rounded up to 8 significant bits: by less
@@ -270,6 +272,22 @@ impl Lattice {
     pub(super) fn region(&self, [i, j, k]: [u32; 3], size: usize) -> Bounds {
         let size = size as u32;
         Bounds::new(self.node(i, j, k), self.node(i + size, j + size, k + size))
+    }
+
+    /// The same with what is close about it: a face that operands share there is within it.
+    pub(super) fn about(&self, first: [u32; 3], size: usize) -> Bounds {
+        self.region(first, size).inflate(self.close())
+    }
+
+    /// What is closer than this is close about a point.
+    pub(super) fn close(&self) -> f64 {
+        2.0 * BESIDE * self.scale()
+    }
+
+    /// The largest length about it: what rounding is in proportion to.
+    pub(super) fn scale(&self) -> f64 {
+        let bounds = self.bounds();
+        bounds.longest_side() + bounds.min.abs().max(bounds.max.abs()).max_element()
     }
 
     /// The box of all cells.

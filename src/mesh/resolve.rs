@@ -111,7 +111,7 @@ impl Search<'_> {
     /// Finds those of a cube of cells.
     fn of(&mut self, first: [usize; 3], size: usize, program: &Program) {
         let at = [0, 1, 2].map(|axis| self.block[axis] + first[axis] as u32);
-        let region = self.lattice.region(at, size);
+        let region = self.lattice.about(at, size);
         if !self.has_near(first, size, self.near) {
             return;
         }
@@ -121,6 +121,9 @@ impl Search<'_> {
             Narrowed::Simpler(simpler) => Some(simpler),
         };
         let program = simpler.as_ref().unwrap_or(program);
+        if program.is_seamless(&region) {
+            return;
+        }
         if size > 1 {
             let tries = &mut self.tried[size];
             if tries.is_promising() {

@@ -220,11 +220,12 @@ impl Sampler for SolidSampler<'_> {
         if !out.iter().fold(false, |any, value| any | (value.abs() <= doubt)) {
             return;
         }
-        let program = self.programs.of(number);
+        let (program, scale) = (self.programs.of(number), self.lattice.scale());
         for (n, value) in out.iter_mut().enumerate() {
             if value.abs() <= doubt {
                 let at = |axis: usize, stride: usize| block[axis] + (n / stride % SIDE) as u32;
-                let exact = program.value(self.lattice.node(at(0, 1), at(1, SIDE), at(2, SIDE * SIDE)));
+                let node = self.lattice.node(at(0, 1), at(1, SIDE), at(2, SIDE * SIDE));
+                let exact = program.value_or_around(node, scale);
                 *value = if exact > 0.0 { value.abs().max(f32::MIN_POSITIVE) } else { -value.abs() };
             }
         }

@@ -8,34 +8,10 @@
 
 use glam::DVec3;
 
-use crate::eval::{Compiled, Program, limited};
-
-/// Values of less than this, in proportion to lengths about the solid, are rounding.
-const ROUNDING: f64 = 1e-13;
-
-/// How far beside a point it is looked, in proportion to the same.
-const BESIDE: f64 = 1e-10;
+use crate::eval::{AROUND, BESIDE, Compiled, Program, ROUNDING, limited};
 
 /// Normals that differ by less are one.
 const SAME: f64 = 1e-4;
-
-/// Directions first looked along: along no axis, as faces are.
-const AROUND: [[f64; 3]; 14] = [
-    [0.97, 0.21, 0.12],
-    [-0.94, 0.17, -0.29],
-    [0.24, 0.95, -0.19],
-    [0.15, -0.96, 0.23],
-    [-0.11, 0.28, 0.95],
-    [0.27, -0.13, -0.95],
-    [0.51, 0.66, 0.55],
-    [-0.62, 0.49, 0.61],
-    [0.57, -0.64, 0.52],
-    [0.63, 0.52, -0.57],
-    [-0.49, -0.55, 0.67],
-    [-0.61, 0.58, -0.54],
-    [0.48, -0.53, -0.70],
-    [-0.66, -0.54, -0.52],
-];
 
 /// Whether a point is inside, or inside is all around it.
 pub(super) fn is_inside(programs: &Compiled, p: DVec3) -> bool {

@@ -277,6 +277,43 @@ fn what_deformations_make_thin_is_told() {
     }
 }
 
+/// Parts that meet in a face: it is within the mesh, wherever it lies between the nodes, and nothing
+/// may be lost there.
+#[test]
+fn joints_are_within_the_mesh() {
+    let block = Solid::cuboid([40.0, 40.0, 16.0]);
+    let disc = Solid::cylinder(18.0, 16.0);
+    let beam = Solid::cuboid([20.0, 40.0, 16.0]);
+    let up = |solid: &Solid| solid.translate([0.0, 0.0, 16.0]);
+    let plug = Solid::cylinder(8.0, 16.0);
+    let towers = [
+        ("blocks", &block | up(&block)),
+        ("block and disc", &block | up(&disc)),
+        ("discs", &disc | up(&disc)),
+        ("three", &block | up(&beam).translate([-10.0, 0.0, 0.0]) | up(&beam).translate([10.0, 0.0, 0.0])),
+        ("plug", (&block - &plug) | &plug),
+        ("flush cut", (&block | up(&block)) - Solid::cuboid([50.0, 50.0, 16.0]).translate([0.0, 0.0, 16.0])),
+    ];
+    for (name, tower) in &towers {
+        let volume = tower.measure(1e-3).unwrap().volume;
+        // Upon a plane of nodes at 11/32 of a cell, and elsewhere.
+        for off in [0.34375, 0.0, 0.3, 0.77] {
+            let right = tower.translate([0.34375, 0.34375, off - 8.0]);
+            let turned = tower.rotate_x(rad(0.3)).rotate_z(rad(0.5)).translate([0.0, 0.0, off]);
+            for solid in [&right, &turned, &right.scale(1.0 / 16.0)] {
+                let cell = if solid.bounds().unwrap().longest_side() < 10.0 { 1.0 / 16.0 } else { 1.0 };
+                let mesh = solid.mesh(&settings(cell)).unwrap();
+                let text = format!("{name}, {off}, cells of {cell}: {} lost", mesh.possibly_lost());
+                assert!(mesh.check().is_sound() && mesh.components().len() == 1, "{text}");
+                assert_eq!(mesh.possibly_lost(), 0, "{text}");
+                assert!((mesh.volume() / (cell * cell * cell * volume) - 1.0).abs() < 5e-3, "{text}");
+            }
+        }
+        let count = unresolved(tower, CellSize::Length(1.0), None);
+        println!("{name}: {count} unresolved");
+    }
+}
+
 /// The walls of a small body: few nodes are in them, in few blocks.
 #[test]
 fn torn_walls_of_small_bodies_are_told() {

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::{Field, ParamError, check, leaf::falling_range};
-use crate::{Bounds, Euclid, Interval, Real};
+use super::{Field, ParamError, check, leaf::falling_range, rfunction::DistanceAnd};
+use crate::{Bounds, Dual, Interval, Real};
 
 /// A box about the origin with edges along the axes, by true distance (1-Lipschitz).
 ///
@@ -29,20 +29,28 @@ pub struct Cuboid {
     pub size: DVec3,
 }
 
+impl Cuboid {
+    /// How far within its pairs of faces a point is.
+    #[inline(always)]
+    fn within<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+        let within = |x: R, size: f64| x.lift(0.5 * size) - x.abs();
+        [within(x, self.size.x), within(y, self.size.y), within(z, self.size.z)]
+    }
+}
+
 impl Field for Cuboid {
     fn name(&self) -> &'static str {
         "box"
     }
 
     #[inline(always)]
-    fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
-        let qx = x.abs() - 0.5 * self.size.x;
-        let qy = y.abs() - 0.5 * self.size.y;
-        let qz = z.abs() - 0.5 * self.size.z;
-        let zero = x.lift(0.0);
-        let (ox, oy, oz) = (qx.max(zero), qy.max(zero), qz.max(zero));
-        let outside = ox.nested_as(oy, oz, Euclid, Euclid);
-        -(outside + qx.max(qy).max(qz).min(zero))
+    fn eval<R: Real>(&self, p: [R; 3]) -> R {
+        let [a, b, c] = self.within(p);
+        a.monotone3(b, c, &DistanceAnd)
+    }
+
+    fn faces(&self, p: [Dual<Interval>; 3]) -> Vec<Dual<Interval>> {
+        self.within(p).into()
     }
 
     fn bounds(&self) -> Bounds {

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::{Field, ParamError, check, leaf::falling_range};
-use crate::{Bounds, Euclid, Interval, Real};
+use super::{Field, ParamError, check, leaf::falling_range, rfunction::DistanceAnd};
+use crate::{Bounds, Dual, Euclid, Interval, Real};
 
 /// A cylinder about the z axis, centred at the origin, by true distance (1-Lipschitz).
 ///
@@ -32,18 +32,27 @@ pub struct Cylinder {
     pub height: f64,
 }
 
+impl Cylinder {
+    /// How far within its side and its end faces a point is.
+    #[inline(always)]
+    fn within<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 2] {
+        [x.lift(self.radius) - x.norm_as(y, Euclid), z.lift(0.5 * self.height) - z.abs()]
+    }
+}
+
 impl Field for Cylinder {
     fn name(&self) -> &'static str {
         "cylinder"
     }
 
     #[inline(always)]
-    fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
-        let side = x.norm_as(y, Euclid) - self.radius;
-        let cap = z.abs() - 0.5 * self.height;
-        let zero = x.lift(0.0);
-        let (os, oc) = (side.max(zero), cap.max(zero));
-        -(os.norm_as(oc, Euclid) + side.max(cap).min(zero))
+    fn eval<R: Real>(&self, p: [R; 3]) -> R {
+        let [side, cap] = self.within(p);
+        side.monotone(cap, &DistanceAnd)
+    }
+
+    fn faces(&self, p: [Dual<Interval>; 3]) -> Vec<Dual<Interval>> {
+        self.within(p).into()
     }
 
     fn bounds(&self) -> Bounds {

@@ -11,9 +11,10 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::outlined::{Outlined, zone_range, zone_rises};
-use super::{Along, Case, Crease, Field, Kernel, ParamError, Placement, Segment, Way, Zone, bits, steepest};
-use crate::kernel::{Element, Formula, Visit, run};
-use crate::{Bounds, Dual, Interval, Jet, Real};
+use super::placed::{Gradient, Value};
+use super::{Along, Crease, Field, ParamError, Placement, Segment, Way, Zone, bits, steepest};
+use crate::kernel::{Element, run};
+use crate::{Bounds, Dual, Interval, Jet};
 use rvachev_num::symbol::Symbol;
 use rvachev_num::{Cancelled, Run};
 
@@ -65,6 +66,12 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn roundoff_over(&self, region: [Interval; 3]) -> f64 {
         self.roundoff(reach(region))
     }
+
+    /// Ranges of numbers of which the least has the sign of the value.
+    fn faces(&self, p: [Dual<Interval>; 3]) -> Vec<Dual<Interval>> {
+        vec![self.dual_range(p)]
+    }
+
     /// The value at a point of the leaf's frame.
     fn value(&self, p: [f64; 3]) -> f64;
     /// Value and derivatives at a point.
@@ -249,123 +256,6 @@ pub fn chained(value: Interval, slopes: [Interval; 3], p: [Dual<Interval>; 3]) -
     Dual::new(value, [along(0), along(1), along(2)])
 }
 
-/// A leaf, or a case of it, where it stands: its value, or that and the three derivatives.
-struct Placed<'a, C>(&'a C, &'a Placement);
-
-impl<C: Case> Formula<3, 1> for Placed<'_, C> {
-    #[inline(always)]
-    fn run<R: Real>(&self, p: [R; 3]) -> [R; 1] {
-        [self.1.finish(self.0.value(self.1.apply(p)))]
-    }
-}
-
-impl<C: Case> Formula<3, 4> for Placed<'_, C> {
-    #[inline(always)]
-    fn run<R: Real>(&self, p: [R; 3]) -> [R; 4] {
-        placed(self.1, self.0.value(Dual::point(self.1.apply(p))))
-    }
-}
-
-struct Value<'a, F>(&'a F, &'a Placement);
-
-impl<F: Field> Formula<3, 1> for Value<'_, F> {
-    #[inline(always)]
-    fn run<R: Real>(&self, p: [R; 3]) -> [R; 1] {
-        Placed(self.0, self.1).run(p)
-    }
-
-    #[inline(always)]
-    fn specialised<V: Visit<3, 1>>(&self, visit: V) {
-        self.0.specialised(Each { placement: self.1, visit });
-    }
-
-    fn point(&self, p: [f64; 3]) -> [f64; 1] {
-        [self.1.finish(self.0.at(self.1.apply(p)))]
-    }
-}
-
-/// Passes a leaf, its cases told apart, on as a formula.
-struct Each<'a, V> {
-    placement: &'a Placement,
-    visit: V,
-}
-
-impl<F: Field, V: Visit<3, 1>> Kernel<F> for Each<'_, V> {
-    #[inline(always)]
-    fn run(self, leaf: &F) {
-        Kernel::<F>::run_case(self, leaf);
-    }
-
-    #[inline(always)]
-    fn run_wide(self, leaf: &F) {
-        Kernel::<F>::run_case_wide(self, leaf);
-    }
-
-    #[inline(always)]
-    fn run_case<C: Case>(self, case: &C) {
-        self.visit.visit(&Placed(case, self.placement));
-    }
-
-    #[inline(always)]
-    fn run_case_wide<C: Case>(self, case: &C) {
-        self.visit.visit_wide(&Placed(case, self.placement));
-    }
-}
-
-struct Gradient<'a, F>(&'a F, &'a Placement);
-
-impl<F: Field> Formula<3, 4> for Gradient<'_, F> {
-    #[inline(always)]
-    fn run<R: Real>(&self, p: [R; 3]) -> [R; 4] {
-        Placed(self.0, self.1).run(p)
-    }
-
-    #[inline(always)]
-    fn specialised<V: Visit<3, 4>>(&self, visit: V) {
-        self.0.specialised(EachGradient { placement: self.1, visit });
-    }
-
-    fn point(&self, p: [f64; 3]) -> [f64; 4] {
-        placed(self.1, self.0.dual_at(Dual::point(self.1.apply(p))))
-    }
-}
-
-/// Value and derivatives of the leaf's frame, as they count outside of it.
-#[inline(always)]
-fn placed<R: Real>(placement: &Placement, Dual { v, d }: Dual<R>) -> [R; 4] {
-    let k = placement.scale;
-    let [x, y, z] = placement.pull([d[0] * k, d[1] * k, d[2] * k]);
-    [placement.finish(v), x, y, z]
-}
-
-/// The same for gradients.
-struct EachGradient<'a, V> {
-    placement: &'a Placement,
-    visit: V,
-}
-
-impl<F: Field, V: Visit<3, 4>> Kernel<F> for EachGradient<'_, V> {
-    #[inline(always)]
-    fn run(self, leaf: &F) {
-        Kernel::<F>::run_case(self, leaf);
-    }
-
-    #[inline(always)]
-    fn run_wide(self, leaf: &F) {
-        Kernel::<F>::run_case_wide(self, leaf);
-    }
-
-    #[inline(always)]
-    fn run_case<C: Case>(self, case: &C) {
-        self.visit.visit(&Placed(case, self.placement));
-    }
-
-    #[inline(always)]
-    fn run_case_wide<C: Case>(self, case: &C) {
-        self.visit.visit_wide(&Placed(case, self.placement));
-    }
-}
-
 impl<F: Field> AnyField for F {
     fn name(&self) -> &'static str {
         Field::name(self)
@@ -424,6 +314,10 @@ impl<F: Field> AnyField for F {
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
         Field::dual_range(self, p)
+    }
+
+    fn faces(&self, p: [Dual<Interval>; 3]) -> Vec<Dual<Interval>> {
+        Field::faces(self, p)
     }
 
     fn jet(&self, p: [Jet; 3]) -> Jet {

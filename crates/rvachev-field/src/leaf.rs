@@ -151,6 +151,13 @@ pub trait Field: Debug + Send + Sync + 'static {
         self.dual_over(p)
     }
 
+    /// Ranges, with their derivatives, of numbers of which the least has the sign of the value,
+    /// over such a box: how far inside each of its sides a box is, say. Where operands meet in a
+    /// face, they tell it where the value itself is near an edge. The default is the value alone.
+    fn faces(&self, p: [Dual<Interval>; 3]) -> Vec<Dual<Interval>> {
+        vec![self.dual_range(p)]
+    }
+
     /// Ranges of the value, of its derivatives and of theirs, over a box whose sides are given with
     /// derivatives of their own: how much normals turn in it, which chamfers between leaves ask.
     /// The default runs the formula on these numbers.

@@ -37,6 +37,7 @@ mod number;
 mod outline;
 mod outlined;
 mod patches;
+mod placed;
 mod placement;
 mod points;
 pub mod power;

@@ -31,7 +31,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::blend::{self, RicciSide};
 use super::{ParamError, VALUE_LIMIT};
-use crate::{Euclid, Joined, Monotone, Norm, NormKind, Op, Powers, Real};
+use crate::{Euclid, Joined, Monotone, Monotone3, Norm, NormKind, Op, Powers, Real};
 
 /// How set operations combine values. All rules give the same solid; they differ in the
 /// field around and inside it.
@@ -371,19 +371,39 @@ impl Monotone for DistanceAnd {
         // The slopes of a norm are those of the negative parts, which are negative; at
         // the corner itself the norm has none.
         let least = x.min(y);
-        (self.value(x, y), least.select(first, -nx), least.select(one - first, -ny))
+        (Monotone::value(self, x, y), least.select(first, -nx), least.select(one - first, -ny))
+    }
+}
+
+impl Monotone3 for DistanceAnd {
+    #[inline(always)]
+    fn value<R: Real>(&self, x: R, y: R, z: R) -> R {
+        let zero = x.lift(0.0);
+        x.min(y).min(z).max(zero) - x.min(zero).nested_as(y.min(zero), z.min(zero), Euclid, Euclid)
+    }
+
+    #[inline(always)]
+    fn parts<R: Real>(&self, x: R, y: R, z: R) -> (R, [R; 3]) {
+        let (zero, one) = (x.lift(0.0), x.lift(1.0));
+        let (first, second) = ((y.min(z) - x).select(one, zero), (z - y).select(one, zero));
+        let others = one - first;
+        let (_, [nx, ny, nz]) = x.min(zero).nested_parts_as(y.min(zero), z.min(zero), Euclid, Euclid);
+        let least = x.min(y).min(z);
+        let slopes =
+            [least.select(first, -nx), least.select(others * second, -ny), least.select(others * (one - second), -nz)];
+        (Monotone3::value(self, x, y, z), slopes)
     }
 }
 
 impl Monotone for RoundedAnd {
     #[inline(always)]
     fn value<R: Real>(&self, x: R, y: R) -> R {
-        DistanceAnd.value(x, y) + self.0
+        Monotone::value(&DistanceAnd, x, y) + self.0
     }
 
     #[inline(always)]
     fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R) {
-        let (value, dx, dy) = DistanceAnd.parts(x, y);
+        let (value, dx, dy) = Monotone::parts(&DistanceAnd, x, y);
         (value + self.0, dx, dy)
     }
 }

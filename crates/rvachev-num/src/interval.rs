@@ -379,6 +379,10 @@ impl Real for Interval {
         // It rises with |a| and |b|: two evaluations are the exact range. A norm by powers
         // and logarithms takes three library calls.
         let (a, b) = (self.abs(), other.abs());
+        // Of one number it is exact.
+        if a.hi == 0.0 || b.hi == 0.0 {
+            return if a.hi == 0.0 { b } else { a };
+        }
         let wide = Interval::library(a.lo.norm(b.lo, norm), a.hi.norm(b.hi, norm));
         let wide =
             if let Norm::P { .. } | Norm::Steep { .. } = norm { Interval::library(wide.lo, wide.hi) } else { wide };
@@ -450,6 +454,10 @@ fn slope(a: Interval, b: Interval, norm: Norm) -> Interval {
         };
     }
     let b = b.abs();
+    // It is the absolute value of a: with one slope on either side of 0, up to there.
+    if b.hi == 0.0 && (a.hi <= 0.0) != (a.lo >= 0.0) {
+        return Interval::point(if a.hi <= 0.0 { -1.0 } else { 1.0 });
+    }
     // Upper end: largest a with the b that helps it, and alike below.
     let hi = if a.hi > 0.0 { corner_slope(a.hi, b.lo, norm) } else { -corner_slope(-a.hi, b.hi, norm) };
     let lo = if a.lo < 0.0 { -corner_slope(-a.lo, b.lo, norm) } else { corner_slope(a.lo, b.hi, norm) };

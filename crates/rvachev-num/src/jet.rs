@@ -358,16 +358,16 @@ impl Real for Jet {
         function.value(self)
     }
 
-    // How the slopes change is not told.
+    // The formula tells how slopes change, the function's own slopes what they are.
     fn monotone<M: Monotone>(self, o: Jet, function: &M) -> Jet {
         let (v, a, b) = function.parts(self.v, o.v);
-        self.chain2(&o, v, [a, b], [Interval::ALL; 3])
+        Jet { h: function.value(self, o).h, ..self.chain2(&o, v, [a, b], [ZERO; 3]) }
     }
 
     fn monotone3<M: Monotone3>(self, y: Jet, z: Jet, function: &M) -> Jet {
         let (v, [a, b, c]) = function.parts(self.v, y.v, z.v);
-        let both = self.chain2(&y, v, [a, b], [Interval::ALL; 3]);
-        both.chain2(&z, v, [Interval::point(1.0), c], [Interval::ZERO, Interval::ALL, Interval::ALL])
+        let both = self.chain2(&y, v, [a, b], [ZERO; 3]);
+        Jet { h: function.value(self, y, z).h, ..both.chain2(&z, v, [Interval::point(1.0), c], [ZERO; 3]) }
     }
 }
 

@@ -34,7 +34,6 @@
 
 use glam::Vec3A;
 
-use super::probe;
 use crate::mesh::feature::{Crease, Slope, differ};
 
 /// How far the two triangles of four vertices may be off the surface in their middles, in cells,
@@ -47,6 +46,13 @@ const FAR: f32 = 0.0175;
 /// The distance of a longer loop's middle from the surface, in cells, beyond which there is a
 /// vertex.
 const HIGH: f32 = 0.0125;
+
+/// And beyond which the normals do not tell how high the surface is: a fifth less, or more, is as
+/// much as the vertex may be off.
+const STEEP: f32 = 0.06;
+
+/// The most that a vertex is raised above the surface, in cells.
+const MOST: f32 = 0.06;
 
 /// How high the vertex is above the middle of a loop, as a part of how high the surface is: of
 /// three to seven vertices.
@@ -157,7 +163,12 @@ impl<const N: usize> Ring<N> {
             return Cover::Table;
         }
         let normal = self.sum.normalize_or_zero();
-        Cover::Top { at: middle + raised(N, height) * normal, normal }
+        let at = middle + raised(N, height) * normal;
+        // Beyond a face of the cell it cannot be.
+        if far > STEEP || at.floor() != middle.floor() {
+            return Cover::Open;
+        }
+        Cover::Top { at, normal }
     }
 }
 
@@ -165,11 +176,13 @@ impl<const N: usize> Ring<N> {
 /// above that.
 #[inline(always)]
 fn raised(count: usize, height: f32) -> f32 {
-    height + ((RAISED[count.clamp(3, 7) - 3] - 1.0) * height).clamp(-probe::OFF, probe::OFF)
+    height + ((RAISED[count.clamp(3, 7) - 3] - 1.0) * height).clamp(-MOST, MOST)
 }
 
-/// What a smooth cell has.
+/// What a cell has.
 pub(super) enum Cover {
+    /// What the field tells in its middle.
+    Open,
     /// The triangles of the table.
     Table,
     /// These, with a diagonal between four vertices, by their places in the loop.

@@ -384,6 +384,9 @@ impl Lists {
             } else if ring.is_smooth() {
                 ring.cover(positions)
             } else {
+                Cover::Open
+            };
+            if let Cover::Open = cover {
                 let (low, positions): (_, [Vec3A; N]) = (vector(within), positions());
                 let places: [_; N] = std::array::from_fn(|n| positions[n] - low);
                 let mut segments: [_; N] =
@@ -394,13 +397,14 @@ impl Lists {
                     self.add_candidate(within, (&mut segments, &places), samples.crease, refiner);
                 }
                 continue;
-            };
+            }
             // As many as three bits tell.
             let mut corners = [0; 8];
             corners[..N].copy_from_slice(&vertices);
             let corner = |n: u8| corners[usize::from(n & 7)];
             let start = plain.triangles.len();
             match cover {
+                Cover::Open => {}
                 Cover::Table => {
                     plain.triangles.extend(outline.triangles::<N>().iter().map(|triangle| triangle.map(corner)));
                 }

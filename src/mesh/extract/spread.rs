@@ -22,7 +22,9 @@
 use glam::Vec3A;
 
 use super::curvature::Middle;
-use crate::mesh::feature::{Segment, Slope};
+use super::probe::{OFF, is_beyond};
+use super::samples::cell_of;
+use crate::mesh::feature::{INSET, Segment, Slope};
 
 /// A cell whose normals differ as those of a crease do.
 pub(super) struct Spread<'a> {
@@ -46,7 +48,7 @@ pub(super) struct Spreads {
     /// The segments of all, cell after cell; and the places of their vertices.
     segments: Vec<Segment>,
     places: Vec<Vec3A>,
-    /// The field in the middles.
+    /// The field at points.
     found: Vec<Slope>,
 }
 
@@ -75,23 +77,37 @@ impl Spreads {
     pub(super) fn look(
         &mut self,
         step: f32,
-        slopes: impl FnOnce(&[Vec3A], &mut Vec<Slope>) -> bool,
+        mut slopes: impl FnMut(&[Vec3A], &mut Vec<Slope>) -> bool,
         mut each: impl FnMut(Spread<'_>),
     ) {
         let Spreads { cells, middles, segments, places, found } = self;
         if cells.is_empty() {
             return;
         }
-        if !slopes(middles, found) || found.len() != middles.len() {
+        let mut ask = |points: &[Vec3A]| {
             found.clear();
-        }
+            if !slopes(points, found) || found.len() != points.len() {
+                found.clear();
+            }
+            found.clone()
+        };
+        let of_middles = ask(middles);
+        let top = |(n, (number, middle)): (usize, &(u16, Middle))| {
+            let (at, normal) = middle.top(of_middles.get(n)?, step)?;
+            let low = Vec3A::from_array(cell_of([0; 3], *number).map(|at| at as f32));
+            Some((at.clamp(low + INSET, low + (1.0 - INSET)), normal))
+        };
+        let tops: Vec<Option<(Vec3A, Vec3A)>> = cells.iter().enumerate().map(top).collect();
+        // What bulges out of its cell is off the surface within.
+        let points: Vec<Vec3A> = tops.iter().flatten().map(|(at, _)| *at).collect();
+        let mut off = ask(&points).into_iter().map(|slope| is_beyond(&slope, OFF * step));
+        let mut tops = tops.into_iter().map(|top| top.filter(|_| !off.next().unwrap_or(false)));
         let (mut segments, mut places) = (&mut segments[..], &places[..]);
-        for (n, (number, middle)) in cells.iter().enumerate() {
+        for (number, middle) in &*cells {
             let own = segments.split_off_mut(..middle.count).unwrap_or_default();
             let (at, rest) = places.split_at(own.len());
             places = rest;
-            let top = found.get(n).and_then(|slope| middle.top(slope, step));
-            each(Spread { number: *number, segments: own, places: at, top });
+            each(Spread { number: *number, segments: own, places: at, top: tops.next().flatten() });
         }
     }
 }

@@ -2,9 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::super::{Field, ParamError, check, leaf::falling_range};
+use super::super::{Field, ParamError, check, leaf::falling_range, rfunction::DistanceAnd};
 use super::{column, flattened};
-use crate::{Bounds, Euclid, Interval, Real};
+use crate::{Bounds, Dual, Interval, Real};
 
 /// A rectangle about the origin of the plane, by true distance (1-Lipschitz);
 /// `radius` rounds its corners.
@@ -39,18 +39,28 @@ pub struct Rectangle {
     pub radius: f64,
 }
 
+impl Rectangle {
+    /// How far within the pairs of sides of its core a point is.
+    #[inline(always)]
+    fn within<R: Real>(&self, [x, y, _]: [R; 3]) -> [R; 2] {
+        let within = |x: R, size: f64| x.lift(0.5 * size - self.radius) - x.abs();
+        [within(x, self.size.x), within(y, self.size.y)]
+    }
+}
+
 impl Field for Rectangle {
     fn name(&self) -> &'static str {
         "rectangle"
     }
 
     #[inline(always)]
-    fn eval<R: Real>(&self, [x, y, _]: [R; 3]) -> R {
-        let zero = x.lift(0.0);
-        let a = x.abs() - (0.5 * self.size.x - self.radius);
-        let b = y.abs() - (0.5 * self.size.y - self.radius);
-        let outside = a.max(zero).norm_as(b.max(zero), Euclid);
-        -(outside + a.max(b).min(zero)) + self.radius
+    fn eval<R: Real>(&self, p: [R; 3]) -> R {
+        let [a, b] = self.within(p);
+        a.monotone(b, &DistanceAnd) + self.radius
+    }
+
+    fn faces(&self, p: [Dual<Interval>; 3]) -> Vec<Dual<Interval>> {
+        if self.radius > 0.0 { vec![self.dual_range(p)] } else { self.within(p).into() }
     }
 
     fn bounds(&self) -> Bounds {
