@@ -14,7 +14,6 @@ mod numbers;
 mod shapes;
 mod shrink;
 mod text;
-mod vertices;
 
 use std::fs;
 use std::ops::Range;
@@ -236,12 +235,6 @@ fn shapes_of_twenty_thousand_solids_agree() {
     run(seeds("BATTERY_SEEDS", 0..20_000), make::solid, shapes::check, SHAPES);
 }
 
-#[test]
-#[ignore = "takes an hour: BATTERY_SEEDS=0..1000 chooses"]
-fn vertices_of_twenty_thousand_solids_are_on_the_surface() {
-    run(seeds("BATTERY_SEEDS", 0..20_000), make::solid, vertices::check, SHAPES);
-}
-
 #[cfg(feature = "import")]
 #[test]
 #[ignore = "takes many minutes: BATTERY_SEEDS=0..1000 chooses"]
@@ -261,7 +254,6 @@ fn wrong_of(file: impl AsRef<Path>) -> Vec<String> {
         let check: Check = match name {
             "numbers" => numbers::check,
             "shapes" => shapes::check,
-            "vertices" => vertices::check,
             #[cfg(feature = "import")]
             "files" => files::check,
             #[cfg(not(feature = "import"))]
