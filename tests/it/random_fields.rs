@@ -201,8 +201,8 @@ fn fields(range: std::ops::Range<u64>, cell: f64, thin: ThinFeatures) {
             }
         }
     }
-    // One that a tube thinner than a cell has in the middle of a cell may be.
-    assert!(astray * 100_000 <= vertices, "{astray} of {vertices} vertices are off the surface");
+    // Some that tubes and films thinner than a cell have in the middle of cells may be.
+    assert!(astray * 50_000 <= vertices, "{astray} of {vertices} vertices are off the surface");
     println!("{astray} of {vertices} vertices are off the surface");
     println!("{triangles} triangles; {cut} meshes cut at bounds, up to {beyond:.4} cells beyond; {empty} empty");
 }
