@@ -157,6 +157,18 @@ impl Interval {
         if self == Interval::ZERO || other == Interval::ZERO { Interval::ZERO } else { self * other }
     }
 
+    /// The sum; 0 adds no rounding.
+    #[inline]
+    pub(crate) fn plus(self, other: Interval) -> Interval {
+        if self == Interval::ZERO {
+            other
+        } else if other == Interval::ZERO {
+            self
+        } else {
+            self + other
+        }
+    }
+
     /// The interval widened by `margin` on each side.
     #[must_use]
     #[inline(always)]
@@ -425,12 +437,13 @@ impl Real for Interval {
 
     #[inline(never)]
     fn chain(d: [Interval; 3], a: Interval) -> [Interval; 3] {
-        [d[0] * a, d[1] * a, d[2] * a]
+        [d[0].times(a), d[1].times(a), d[2].times(a)]
     }
 
     #[inline(never)]
     fn chain2(d: [Interval; 3], a: Interval, e: [Interval; 3], b: Interval) -> [Interval; 3] {
-        [d[0] * a + e[0] * b, d[1] * a + e[1] * b, d[2] * a + e[2] * b]
+        let both = |axis: usize| d[axis].times(a).plus(e[axis].times(b));
+        [both(0), both(1), both(2)]
     }
 
     #[inline(never)]
