@@ -158,8 +158,15 @@ impl Interval {
     }
 
     /// The sum; 0 adds no rounding.
+    ///
+    /// ```
+    /// use rvachev_num::Interval;
+    ///
+    /// assert_eq!(Interval::ZERO.plus(Interval::point(0.1)), Interval::point(0.1));
+    /// ```
+    #[must_use]
     #[inline]
-    pub(crate) fn plus(self, other: Interval) -> Interval {
+    pub fn plus(self, other: Interval) -> Interval {
         if self == Interval::ZERO {
             other
         } else if other == Interval::ZERO {
@@ -540,6 +547,7 @@ fn cosine(x: Interval) -> Interval {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Dual;
 
     #[test]
     fn the_next_number_is_that_of_the_library_but_of_0() {
@@ -576,6 +584,14 @@ mod tests {
         for found in [from * -one, -from / one, from * -3.0] {
             assert_eq!(found.hi(), 0.0, "{found:?}");
         }
+    }
+
+    /// A function of x alone has no slope along y and z, whatever it has along x.
+    #[test]
+    fn derivatives_that_are_0_stay_so() {
+        let x = Dual::variable(Interval::new(0.5, 1.5), 0);
+        assert_eq!(x.floor().d, [Interval::ALL, Interval::ZERO, Interval::ZERO]);
+        assert_eq!((x * x.exp2() + x.floor()).d[1..], [Interval::ZERO; 2]);
     }
 
     #[test]
