@@ -117,7 +117,7 @@ impl Interval {
     #[must_use]
     #[inline(always)]
     pub fn magnitude(self) -> f64 {
-        self.lo.abs().max(self.hi.abs())
+        most(self.lo.abs(), self.hi.abs())
     }
 
     /// Whether `x` lies in the interval.
@@ -131,7 +131,7 @@ impl Interval {
     #[must_use]
     #[inline(always)]
     pub fn hull(self, other: Interval) -> Interval {
-        Interval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+        Interval { lo: least(self.lo, other.lo), hi: most(self.hi, other.hi) }
     }
 
     /// What both hold. Both must be sound ranges of one value; should rounding leave
@@ -139,7 +139,7 @@ impl Interval {
     #[must_use]
     #[inline(always)]
     pub fn narrowed_by(self, other: Interval) -> Interval {
-        let (lo, hi) = (self.lo.max(other.lo), self.hi.min(other.hi));
+        let (lo, hi) = (most(self.lo, other.lo), least(self.hi, other.hi));
         if lo <= hi { Interval { lo, hi } } else { self }
     }
 
@@ -190,12 +190,25 @@ impl Interval {
     }
 
     /// The same of what has underflowed where an end is 0 though there are values below it, or
-    /// above it.
+    /// above it, as `signs` tells.
     #[inline(always)]
-    fn signed(lo: f64, hi: f64, (below, above): (bool, bool)) -> Interval {
-        let lo = if lo == 0.0 && below { -Interval::TINY } else { lo };
-        let hi = if hi == 0.0 && above { Interval::TINY } else { hi };
+    fn signed(mut lo: f64, mut hi: f64, signs: impl FnOnce() -> (bool, bool)) -> Interval {
+        if lo == 0.0 || hi == 0.0 {
+            let (below, above) = signs();
+            lo = if lo == 0.0 && below { -Interval::TINY } else { lo };
+            hi = if hi == 0.0 && above { Interval::TINY } else { hi };
+        }
         Interval::outward(lo, hi)
+    }
+
+    /// The interval whose ends are among products, or quotients, of ends.
+    #[inline(always)]
+    fn among([a, b, c, d]: [f64; 4], signs: impl FnOnce() -> (bool, bool)) -> Interval {
+        // Both infinities have no sum either, and the whole line between them.
+        if (a + b + (c + d)).is_nan() {
+            return Interval::ALL;
+        }
+        Interval::signed(least(least(a, b), least(c, d)), most(most(a, b), most(c, d)), signs)
     }
 
     /// Whether there are numbers below 0, and above it.
@@ -209,7 +222,7 @@ impl Interval {
     fn library(lo: f64, hi: f64) -> Interval {
         const RELATIVE: f64 = Interval::LIBRARY_ULPS * f64::EPSILON;
         let (lo, hi) = (lo - lo.abs().min(f64::MAX) * RELATIVE, hi + hi.abs().min(f64::MAX) * RELATIVE);
-        Interval::signed(lo, hi, (true, true))
+        Interval::signed(lo, hi, || (true, true))
     }
 
     /// Like `library`, for a function with values in `[min, max]`.
@@ -227,7 +240,20 @@ fn next_up(x: f64) -> f64 {
     // −0 becomes 0. The bits of a float are its place among those of its sign.
     let bits = (x + 0.0).to_bits();
     let step = ((bits as i64) >> 63) as u64 | u64::from(bits != 0);
-    f64::from_bits(bits.wrapping_add(step)).min(f64::INFINITY)
+    least(f64::from_bits(bits.wrapping_add(step)), f64::INFINITY)
+}
+
+/// The lesser of two numbers, and the second where one is NaN: what processors have an
+/// instruction for.
+#[inline(always)]
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers.
+#[inline(always)]
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// The signs of the products of numbers of these signs.
@@ -265,10 +291,7 @@ impl Mul for Interval {
     #[inline(always)]
     fn mul(self, o: Interval) -> Interval {
         let (a, b, c, d) = (self.lo * o.lo, self.lo * o.hi, self.hi * o.lo, self.hi * o.hi);
-        if a.is_nan() || b.is_nan() || c.is_nan() || d.is_nan() {
-            return Interval::ALL;
-        }
-        Interval::signed(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)), product(self.signs(), o.signs()))
+        Interval::among([a, b, c, d], || product(self.signs(), o.signs()))
     }
 }
 
@@ -284,10 +307,7 @@ impl Div for Interval {
             return Interval::ALL;
         }
         let (a, b, c, d) = (self.lo / o.lo, self.lo / o.hi, self.hi / o.lo, self.hi / o.hi);
-        if a.is_nan() || b.is_nan() || c.is_nan() || d.is_nan() {
-            return Interval::ALL;
-        }
-        Interval::signed(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)), product(self.signs(), o.signs()))
+        Interval::among([a, b, c, d], || product(self.signs(), o.signs()))
     }
 }
 
@@ -312,10 +332,7 @@ impl Mul<f64> for Interval {
     #[inline(always)]
     fn mul(self, k: f64) -> Interval {
         let (a, b) = (self.lo * k, self.hi * k);
-        if a.is_nan() || b.is_nan() {
-            return Interval::ALL;
-        }
-        Interval::signed(a.min(b), a.max(b), product(self.signs(), (k < 0.0, k > 0.0)))
+        Interval::among([a, b, a, b], || product(self.signs(), (k < 0.0, k > 0.0)))
     }
 }
 
@@ -331,7 +348,7 @@ impl Real for Interval {
     #[inline(always)]
     fn square(self) -> Interval {
         let a = self.abs();
-        Interval::signed(a.lo * a.lo, a.hi * a.hi, a.signs())
+        Interval::signed(a.lo * a.lo, a.hi * a.hi, || a.signs())
     }
 
     #[inline(always)]
@@ -341,23 +358,23 @@ impl Real for Interval {
         } else if self.hi <= 0.0 {
             -self
         } else {
-            Interval { lo: 0.0, hi: self.hi.max(-self.lo) }
+            Interval { lo: 0.0, hi: most(self.hi, -self.lo) }
         }
     }
 
     #[inline(always)]
     fn min(self, o: Interval) -> Interval {
-        Interval { lo: self.lo.min(o.lo), hi: self.hi.min(o.hi) }
+        Interval { lo: least(self.lo, o.lo), hi: least(self.hi, o.hi) }
     }
 
     #[inline(always)]
     fn max(self, o: Interval) -> Interval {
-        Interval { lo: self.lo.max(o.lo), hi: self.hi.max(o.hi) }
+        Interval { lo: most(self.lo, o.lo), hi: most(self.hi, o.hi) }
     }
 
     #[inline(always)]
     fn sqrt(self) -> Interval {
-        Interval::outward(self.lo.max(0.0).sqrt(), self.hi.max(0.0).sqrt())
+        Interval::outward(most(self.lo, 0.0).sqrt(), most(self.hi, 0.0).sqrt())
     }
 
     #[inline(never)]
@@ -468,7 +485,7 @@ impl Real for Interval {
         let rounding = 16.0 * f64::EPSILON;
         let (lo_size, hi_size) = (self.lo.abs().max(other.lo.abs()), self.hi.abs().max(other.hi.abs()));
         let (lo, hi) = (lo - rounding * (lo_size + lo.abs()), hi + rounding * (hi_size + hi.abs()));
-        Interval::signed(lo, hi, (true, true))
+        Interval::signed(lo, hi, || (true, true))
     }
 
     #[inline(always)]
@@ -482,7 +499,7 @@ impl Real for Interval {
         let lo_size = self.lo.abs().max(y.lo.abs()).max(z.lo.abs());
         let hi_size = self.hi.abs().max(y.hi.abs()).max(z.hi.abs());
         let (lo, hi) = (lo - INEXACT * (lo_size + lo.abs()), hi + INEXACT * (hi_size + hi.abs()));
-        Interval::signed(lo, hi, (true, true))
+        Interval::signed(lo, hi, || (true, true))
     }
 }
 
