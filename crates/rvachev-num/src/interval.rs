@@ -345,6 +345,18 @@ impl Real for Interval {
         Interval::point(c)
     }
 
+    /// Most maps move a point, or exchange its coordinates: what they have none of is left out.
+    #[inline]
+    fn scale_add(self, k: f64, b: Interval) -> Interval {
+        if k == 0.0 {
+            b
+        } else if k == 1.0 {
+            self.plus(b)
+        } else {
+            (self * k).plus(b)
+        }
+    }
+
     #[inline(always)]
     fn square(self) -> Interval {
         let a = self.abs();
@@ -468,6 +480,11 @@ impl Real for Interval {
     fn chain2(d: [Interval; 3], a: Interval, e: [Interval; 3], b: Interval) -> [Interval; 3] {
         let both = |axis: usize| d[axis].times(a).plus(e[axis].times(b));
         [both(0), both(1), both(2)]
+    }
+
+    #[inline(never)]
+    fn scale_add_all(a: [Interval; 4], k: f64, b: [Interval; 4]) -> [Interval; 4] {
+        [a[0].scale_add(k, b[0]), a[1].scale_add(k, b[1]), a[2].scale_add(k, b[2]), a[3].scale_add(k, b[3])]
     }
 
     #[inline(never)]
@@ -609,6 +626,20 @@ mod tests {
         let x = Dual::variable(Interval::new(0.5, 1.5), 0);
         assert_eq!(x.floor().d, [Interval::ALL, Interval::ZERO, Interval::ZERO]);
         assert_eq!((x * x.exp2() + x.floor()).d[1..], [Interval::ZERO; 2]);
+    }
+
+    /// A map adds no rounding for what it has none of.
+    #[test]
+    fn maps_that_move_nothing_change_nothing() {
+        let point = Dual::point([Interval::new(-0.1, 0.3), Interval::point(0.7), Interval::ALL]);
+        let zero = Dual::constant(Interval::ZERO);
+        let [x, y, z] = point;
+        for (n, side) in point.into_iter().enumerate() {
+            let row = [0, 1, 2].map(|m| f64::from(m == n));
+            assert_eq!(x.scale_add(row[0], y.scale_add(row[1], z.scale_add(row[2], zero))), side);
+        }
+        let moved = x.scale_add(1.0, y.scale_add(0.0, Dual::constant(Interval::point(0.1))));
+        assert_eq!((moved.v, moved.d), (x.v + 0.1, x.d));
     }
 
     #[test]
