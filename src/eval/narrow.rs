@@ -86,7 +86,7 @@ impl Program {
     pub(crate) fn is_even_along(&self, axis: usize, region: &Bounds) -> bool {
         let by_slope = || {
             let over = self.evaluate(Dual::point(Zone::of_bounds(region).hull()), &mut Vec::new());
-            over.gradient()[axis].magnitude() < f64::MIN_POSITIVE
+            over.gradient()[axis] == Interval::ZERO
         };
         self.nodes.iter().filter_map(Node::valued_by).all(|leaf| !self.axes_of(leaf)[axis]) || by_slope()
     }

@@ -123,6 +123,18 @@ impl Program {
         self.leaf_at(p, |_, _| true)
     }
 
+    /// The same where the values of the leaves are known, by their places among those of the scene.
+    pub(crate) fn leaf_by_values(&self, leaf: impl Fn(u32) -> f64, values: &mut Vec<f64>) -> u32 {
+        values.clear();
+        self.leaf_among(
+            |_, _| true,
+            values,
+            |values| {
+                self.evaluate_leaves(&leaf, values);
+            },
+        )
+    }
+
     /// The number of the leaf that a point inside is in: what it was cut out of, and not what was
     /// taken away nearby.
     pub(crate) fn holding_leaf(&self, p: DVec3) -> u32 {
@@ -132,7 +144,18 @@ impl Program {
     /// The leaf whose value decides at a point, among those operands of each join that count, if
     /// any do. Values are found where there is a choice.
     fn leaf_at(&self, p: DVec3, counts: impl Fn(Op, &Edge) -> bool) -> u32 {
-        let mut values = Vec::new();
+        self.leaf_among(counts, &mut Vec::new(), |values| {
+            self.evaluate_all(limited(p), values);
+        })
+    }
+
+    /// The same where `fill` finds the values of all nodes, of which there are none yet.
+    fn leaf_among(
+        &self,
+        counts: impl Fn(Op, &Edge) -> bool,
+        values: &mut Vec<f64>,
+        fill: impl Fn(&mut Vec<f64>),
+    ) -> u32 {
         let mut at = self.root.node();
         loop {
             let node = &self.nodes[at];
@@ -146,7 +169,7 @@ impl Program {
             let mut chosen = *counted.next().unwrap_or(&operands[0]);
             for edge in counted {
                 if values.is_empty() {
-                    self.evaluate_all(limited(p), &mut values);
+                    fill(values);
                 }
                 let signed = |edge: &Edge| {
                     let value: f64 = values[edge.node()];

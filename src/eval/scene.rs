@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use crate::solid::Trail;
-use crate::{Bounds, Interval};
+use crate::{Bounds, Interval, Real};
 use rvachev_field::{AnyField, AnyWarp, Placement, Zone};
 
 /// Leaves and frames of a compiled solid.
@@ -100,7 +100,7 @@ impl Instance {
 
     /// A range of the leaf's own values, as it counts outside of it.
     pub(crate) fn placed(&self, own: Interval) -> Interval {
-        own * Interval::point(self.placement.scale) + self.placement.shift
+        own.scale_add(self.placement.scale, Interval::point(self.placement.shift))
     }
 }
 

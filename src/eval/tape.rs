@@ -73,6 +73,8 @@ struct FrameStep {
 
 #[derive(Clone)]
 struct LeafStep {
+    /// Its place among those of the scene.
+    leaf: u32,
     slot: usize,
     placement: Placement,
     field: Arc<dyn AnyField>,
@@ -115,8 +117,9 @@ impl Tape {
             let Placement { scale, shift, .. } = instance.placement;
             let error = seen[slot].leaf_error(&instance.to_local, &*instance.field) * scale + 1e-7 * shift.abs();
             roundoff = roundoff.max(error);
-            *leaf = leaves.len() as u32;
+            let place = std::mem::replace(leaf, leaves.len() as u32);
             leaves.push(LeafStep {
+                leaf: place,
                 slot,
                 placement: placed(instance.frame, &instance.to_local, &instance.placement),
                 field: instance.field.clone(),

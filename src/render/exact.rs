@@ -4,10 +4,22 @@
 use super::gbuffer::Surface;
 use super::job::{Job, Ray, Span};
 use super::march::{Found, Marcher};
-use crate::eval::Op;
 
 /// Steps in double precision, after which rays are divided by intervals.
 const STEPS: usize = 4;
+
+/// So many points and more have owners found together, leaf by leaf.
+const TOGETHER: usize = 4;
+
+/// Values of the leaves that may own what rays have hit.
+#[derive(Default)]
+pub(super) struct Owners {
+    /// Their places among those of the scene, and where their values begin.
+    leaves: Vec<(u32, usize)>,
+    values: Vec<f64>,
+    /// Those of all nodes, at one point.
+    nodes: Vec<f64>,
+}
 
 impl Marcher {
     /// Lanes that have come so close to a crossing that rounding hides the sign: where a little
@@ -76,35 +88,35 @@ impl Marcher {
 
     /// The leaves that decide where rays have hit something.
     fn owners(&mut self, job: &Job<'_>, surfaces: &mut [Surface]) {
-        if self.unowned.is_empty() {
-            return;
-        }
-        let Some((op, rivals)) = job.tape.rivals() else {
+        if self.unowned.len() < TOGETHER {
             for (ray, p) in self.unowned.drain(..) {
                 surfaces[ray as usize].owner = job.cell.program.deciding_leaf(job.center + p);
             }
             return;
-        };
+        }
         let [x, y, z, v] = &mut self.double;
         for (axis, list) in [&mut *x, &mut *y, &mut *z].into_iter().enumerate() {
             list.clear();
             list.extend(self.unowned.iter().map(|(_, p)| p[axis]));
         }
-        v.resize(self.unowned.len(), 0.0);
-        self.best.clear();
-        self.best.resize(self.unowned.len(), f64::NEG_INFINITY);
-        // The largest of all values decides a union, of all negatives an intersection.
-        let sign = if op == Op::Or { 1.0 } else { -1.0 };
-        for (number, rival) in rivals {
-            self.evaluator.shortest_values_f64(&rival, [x, y, z], v);
-            for (((ray, _), best), value) in self.unowned.iter().zip(&mut self.best).zip(&*v) {
-                if sign * value > *best {
-                    *best = sign * value;
-                    surfaces[*ray as usize].owner = number;
-                }
-            }
+        let count = self.unowned.len();
+        v.resize(count, 0.0);
+        let Owners { leaves, values, nodes } = &mut self.owners;
+        leaves.clear();
+        values.clear();
+        job.tape.each_leaf(|leaf, alone| {
+            self.evaluator.shortest_values_f64(alone, [x, y, z], v);
+            leaves.push((leaf, values.len()));
+            values.extend_from_slice(v);
+        });
+        leaves.sort_unstable();
+        for (i, (ray, _)) in self.unowned.drain(..).enumerate() {
+            let value = |leaf| {
+                let found = leaves.binary_search_by_key(&leaf, |(leaf, _)| *leaf);
+                found.map_or(f64::NAN, |n| values[leaves[n].1 + i])
+            };
+            surfaces[ray as usize].owner = job.cell.program.leaf_by_values(value, nodes);
         }
-        self.unowned.clear();
     }
 
     /// Values of the program in double precision where the crossings are; their signs are certain.

@@ -24,6 +24,7 @@ use glam::{DVec3, Vec3};
 
 use super::beside::{Crossing, Walk};
 use super::cells::{Cell, Cells};
+use super::exact::Owners;
 use super::gbuffer::Surface;
 use super::job::{Job, Lane, Local, Outcome, Ray, Span};
 use super::slopes::{Known, Slopes};
@@ -68,7 +69,7 @@ pub(super) struct Marcher {
     pub(super) walks: Vec<Walk>,
     pub(super) crossed: Vec<Walk>,
     pub(super) crossings: Vec<Crossing>,
-    pub(super) best: Vec<f64>,
+    pub(super) owners: Owners,
     /// The rays that have hit something.
     pub(super) hits: Vec<u32>,
 }

@@ -153,6 +153,34 @@ fn layers() {
     assert!(hits > 1000, "{hits}");
 }
 
+/// The owners of many pixels are found together, whatever joins the leaves.
+#[test]
+fn owners_in_pictures_are_those_of_the_points() {
+    let star = Profile::regular_polygon(5, 1.0) | Profile::rectangle([2.6, 0.5]);
+    let chamfered = Extrusion { twist: deg(30.0), caps: Caps::Chamfered(0.1), ..Extrusion::new(1.0) };
+    let ball = |x: f64, y: f64| Solid::sphere(0.5).translate([x, y, 0.5]);
+    let balls = [(0.4, 0.0), (-0.4, 0.3), (-0.2, -0.5), (0.1, 0.7)].map(|(x, y)| ball(x, y));
+    let solids = [
+        star.extrude_with(&chamfered) | ball(0.3, 0.2),
+        part() | ball(-1.0, 0.0).twist(rad(0.1)),
+        Solid::union_all(balls.clone(), RFunction::MIN_MAX) - Solid::cuboid([0.4; 3]),
+        balls.iter().skip(1).fold(balls[0].clone(), |all, next| all.union_with(next, Blend::Smooth { radius: 0.1 })),
+    ];
+    for (number, solid) in solids.iter().enumerate() {
+        let layers = solid.layers(&Camera::framing(&solid.bounds().unwrap()), 160, 120).unwrap();
+        let (position, owner) = (layers.position(), layers.owner());
+        let (mut hits, mut others, mut seen) = (0, 0, std::collections::BTreeSet::new());
+        for (p, owner) in position.pixels().iter().zip(owner.pixels()) {
+            let Some(owner) = owner else { continue };
+            hits += 1;
+            seen.insert(*owner);
+            others += u32::from(solid.owner(*p).unwrap().index != *owner);
+        }
+        // At edges rounding tells.
+        assert!(hits > 800 && others * 200 < hits && seen.len() > 2, "{number}: {others} of {hits}, {seen:?}");
+    }
+}
+
 #[test]
 fn silhouette_and_leaves_in_ascii() {
     let solid = Solid::sphere(1.0) - Solid::cuboid([0.7, 4.0, 0.7]);

@@ -124,6 +124,11 @@ impl Zone {
 
     /// The zone after a deformation.
     pub fn warped(&self, warp: &dyn AnyWarp) -> Zone {
+        self.image(warp).0
+    }
+
+    /// The same, and whether the deformation's slopes have bounds in the zone.
+    fn image(&self, warp: &dyn AnyWarp) -> (Zone, bool) {
         let image = warp.dual_ranges(Dual::point(self.hull));
         let direct = image.map(Dual::value);
         let centre = DVec3::from_array(warp.point(self.centre.to_array()));
@@ -144,7 +149,7 @@ impl Zone {
             let slack = DVec3::from_array(direct.map(|s| 0.5 * s.width()));
             let mut zone = Zone::new(box_centre, DMat3::ZERO, slack);
             zone.hull = direct;
-            return zone;
+            return (zone, false);
         }
         let mid = DMat3::from_cols_array_2d(&mid).transpose();
         let spread = DMat3::from_cols_array_2d(&spread).transpose();
@@ -154,7 +159,7 @@ impl Zone {
         for (side, direct) in zone.hull.iter_mut().zip(direct) {
             *side = side.narrowed_by(direct);
         }
-        zone
+        (zone, true)
     }
 }
 
@@ -179,10 +184,14 @@ impl Pieces {
             (None, Some((map, other))) => {
                 Pieces { first: first.mapped(&map), second: other.map(|other| first.mapped(&other)) }
             }
-            (None, None) => match warp.sheets(first.hull()) {
-                Some([one, other]) => Pieces { first: first.warped(&*one), second: Some(first.warped(&*other)) },
-                None => Pieces::one(first.warped(warp)),
-            },
+            (None, None) => {
+                let (whole, bounded) = first.image(warp);
+                // Where it jumps its slopes have no bound.
+                match if bounded { None } else { warp.sheets(first.hull()) } {
+                    Some([one, other]) => Pieces { first: first.warped(&*one), second: Some(first.warped(&*other)) },
+                    None => Pieces::one(whole),
+                }
+            }
             (Some(second), _) => {
                 let whole = |zone: Zone| match warp.branches(zone.hull()) {
                     Some((map, None)) => zone.mapped(&map),
@@ -288,7 +297,7 @@ pub fn largest_stretch(map: &DMat3) -> f64 {
 
 /// The product of two vectors within ranges.
 pub fn dot(a: [Interval; 3], b: [Interval; 3]) -> Interval {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]))
 }
 
 /// Range of a function over a zone by the mean-value form: the value at the centre and ranges

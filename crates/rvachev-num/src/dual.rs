@@ -333,6 +333,13 @@ impl<T: Real> Real for Dual<T> {
     by_chain_rule!(Dual);
 
     #[inline(always)]
+    fn scale_add(self, k: f64, b: Self) -> Self {
+        let all = |dual: Self| [dual.v, dual.d[0], dual.d[1], dual.d[2]];
+        let [v, x, y, z] = T::scale_add_all(all(self), k, all(b));
+        Dual { v, d: [x, y, z] }
+    }
+
+    #[inline(always)]
     fn of_one<F: OfOne>(self, function: &F) -> Self {
         let Along { v, d } = function.value(Along { v: self.v, d: self.v.lift(1.0) });
         self.chain(v, d)

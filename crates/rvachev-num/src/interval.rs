@@ -6,6 +6,11 @@
 //! mathematics library stay within one unit in the last place; their results are inflated by
 //! [`Interval::LIBRARY_ULPS`] such units on each side.
 //!
+//! A sum or a root that is 0 is exact, and so is a product one of whose factors is 0: it stays 0.
+//! The step from 0 would lead to a denormal number, which processors take fifty times as long to
+//! multiply, and every derivative by a variable that a formula does not have is 0. Only what
+//! underflows to 0 is rounded, and that to a normal number.
+//!
 //! Where a value is undefined (∞ − ∞, 0 · ∞, division by an interval that holds 0) the result
 //! is the whole line, never NaN.
 //!
@@ -44,6 +49,10 @@ impl Interval {
 
     /// By how many units in the last place the transcendental functions are inflated.
     pub const LIBRARY_ULPS: f64 = 4.0;
+
+    /// What has underflowed to 0 is rounded to this, or to its negative: no denormal number comes
+    /// of it by some steps more.
+    pub const TINY: f64 = 1e-270;
 
     /// The interval from `a` to `b`, in either order; the whole line if one is NaN.
     #[must_use]
@@ -108,7 +117,7 @@ impl Interval {
     #[must_use]
     #[inline(always)]
     pub fn magnitude(self) -> f64 {
-        self.lo.abs().max(self.hi.abs())
+        most(self.lo.abs(), self.hi.abs())
     }
 
     /// Whether `x` lies in the interval.
@@ -122,7 +131,7 @@ impl Interval {
     #[must_use]
     #[inline(always)]
     pub fn hull(self, other: Interval) -> Interval {
-        Interval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+        Interval { lo: least(self.lo, other.lo), hi: most(self.hi, other.hi) }
     }
 
     /// What both hold. Both must be sound ranges of one value; should rounding leave
@@ -130,7 +139,7 @@ impl Interval {
     #[must_use]
     #[inline(always)]
     pub fn narrowed_by(self, other: Interval) -> Interval {
-        let (lo, hi) = (self.lo.max(other.lo), self.hi.min(other.hi));
+        let (lo, hi) = (most(self.lo, other.lo), least(self.hi, other.hi));
         if lo <= hi { Interval { lo, hi } } else { self }
     }
 
@@ -148,6 +157,25 @@ impl Interval {
         if self == Interval::ZERO || other == Interval::ZERO { Interval::ZERO } else { self * other }
     }
 
+    /// The sum; 0 adds no rounding.
+    ///
+    /// ```
+    /// use rvachev_num::Interval;
+    ///
+    /// assert_eq!(Interval::ZERO.plus(Interval::point(0.1)), Interval::point(0.1));
+    /// ```
+    #[must_use]
+    #[inline]
+    pub fn plus(self, other: Interval) -> Interval {
+        if self == Interval::ZERO {
+            other
+        } else if other == Interval::ZERO {
+            self
+        } else {
+            self + other
+        }
+    }
+
     /// The interval widened by `margin` on each side.
     #[must_use]
     #[inline(always)]
@@ -155,17 +183,46 @@ impl Interval {
         Interval::outward(self.lo - margin, self.hi + margin)
     }
 
-    /// `[lo, hi]`, each end moved to the next float outward.
+    /// `[lo, hi]`, each end but 0 moved to the next float outward.
     #[inline(always)]
     fn outward(lo: f64, hi: f64) -> Interval {
-        if lo <= hi { Interval { lo: -next_up(-lo), hi: next_up(hi) } } else { Interval::ALL }
+        if lo <= hi { Interval { lo: 0.0 - next_up(-lo), hi: next_up(hi) } } else { Interval::ALL }
+    }
+
+    /// The same of what has underflowed where an end is 0 though there are values below it, or
+    /// above it, as `signs` tells.
+    #[inline(always)]
+    fn signed(mut lo: f64, mut hi: f64, signs: impl FnOnce() -> (bool, bool)) -> Interval {
+        if lo == 0.0 || hi == 0.0 {
+            let (below, above) = signs();
+            lo = if lo == 0.0 && below { -Interval::TINY } else { lo };
+            hi = if hi == 0.0 && above { Interval::TINY } else { hi };
+        }
+        Interval::outward(lo, hi)
+    }
+
+    /// The interval whose ends are among products, or quotients, of ends.
+    #[inline(always)]
+    fn among([a, b, c, d]: [f64; 4], signs: impl FnOnce() -> (bool, bool)) -> Interval {
+        // Both infinities have no sum either, and the whole line between them.
+        if (a + b + (c + d)).is_nan() {
+            return Interval::ALL;
+        }
+        Interval::signed(least(least(a, b), least(c, d)), most(most(a, b), most(c, d)), signs)
+    }
+
+    /// Whether there are numbers below 0, and above it.
+    #[inline(always)]
+    fn signs(self) -> (bool, bool) {
+        (self.lo < 0.0, self.hi > 0.0)
     }
 
     /// `[lo, hi]` as a library function returned them, with its error on each side.
     #[inline(always)]
     fn library(lo: f64, hi: f64) -> Interval {
         const RELATIVE: f64 = Interval::LIBRARY_ULPS * f64::EPSILON;
-        Interval::outward(lo - lo.abs().min(f64::MAX) * RELATIVE, hi + hi.abs().min(f64::MAX) * RELATIVE)
+        let (lo, hi) = (lo - lo.abs().min(f64::MAX) * RELATIVE, hi + hi.abs().min(f64::MAX) * RELATIVE);
+        Interval::signed(lo, hi, || (true, true))
     }
 
     /// Like `library`, for a function with values in `[min, max]`.
@@ -177,13 +234,32 @@ impl Interval {
 }
 
 /// `f64::next_up` of a number that is not NaN, without its branches: most of what an interval
-/// operation takes, and most of what it is compiled to.
+/// operation takes, and most of what it is compiled to. 0 stays.
 #[inline(always)]
 fn next_up(x: f64) -> f64 {
     // −0 becomes 0. The bits of a float are its place among those of its sign.
     let bits = (x + 0.0).to_bits();
-    let step = ((bits as i64) >> 63) as u64 | 1;
-    f64::from_bits(bits.wrapping_add(step)).min(f64::INFINITY)
+    let step = ((bits as i64) >> 63) as u64 | u64::from(bits != 0);
+    least(f64::from_bits(bits.wrapping_add(step)), f64::INFINITY)
+}
+
+/// The lesser of two numbers, and the second where one is NaN: what processors have an
+/// instruction for.
+#[inline(always)]
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers.
+#[inline(always)]
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The signs of the products of numbers of these signs.
+#[inline(always)]
+fn product((below, above): (bool, bool), (o_below, o_above): (bool, bool)) -> (bool, bool) {
+    (below & o_above | above & o_below, below & o_below | above & o_above)
 }
 
 impl Neg for Interval {
@@ -215,10 +291,7 @@ impl Mul for Interval {
     #[inline(always)]
     fn mul(self, o: Interval) -> Interval {
         let (a, b, c, d) = (self.lo * o.lo, self.lo * o.hi, self.hi * o.lo, self.hi * o.hi);
-        if a.is_nan() || b.is_nan() || c.is_nan() || d.is_nan() {
-            return Interval::ALL;
-        }
-        Interval::outward(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+        Interval::among([a, b, c, d], || product(self.signs(), o.signs()))
     }
 }
 
@@ -234,10 +307,7 @@ impl Div for Interval {
             return Interval::ALL;
         }
         let (a, b, c, d) = (self.lo / o.lo, self.lo / o.hi, self.hi / o.lo, self.hi / o.hi);
-        if a.is_nan() || b.is_nan() || c.is_nan() || d.is_nan() {
-            return Interval::ALL;
-        }
-        Interval::outward(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+        Interval::among([a, b, c, d], || product(self.signs(), o.signs()))
     }
 }
 
@@ -262,10 +332,7 @@ impl Mul<f64> for Interval {
     #[inline(always)]
     fn mul(self, k: f64) -> Interval {
         let (a, b) = (self.lo * k, self.hi * k);
-        if a.is_nan() || b.is_nan() {
-            return Interval::ALL;
-        }
-        Interval::outward(a.min(b), a.max(b))
+        Interval::among([a, b, a, b], || product(self.signs(), (k < 0.0, k > 0.0)))
     }
 }
 
@@ -278,11 +345,22 @@ impl Real for Interval {
         Interval::point(c)
     }
 
+    /// Most maps move a point, or exchange its coordinates: what they have none of is left out.
+    #[inline]
+    fn scale_add(self, k: f64, b: Interval) -> Interval {
+        if k == 0.0 {
+            b
+        } else if k == 1.0 {
+            self.plus(b)
+        } else {
+            (self * k).plus(b)
+        }
+    }
+
     #[inline(always)]
     fn square(self) -> Interval {
         let a = self.abs();
-        let squared = Interval::outward(a.lo * a.lo, a.hi * a.hi);
-        Interval { lo: squared.lo.max(0.0), hi: squared.hi }
+        Interval::signed(a.lo * a.lo, a.hi * a.hi, || a.signs())
     }
 
     #[inline(always)]
@@ -292,24 +370,23 @@ impl Real for Interval {
         } else if self.hi <= 0.0 {
             -self
         } else {
-            Interval { lo: 0.0, hi: self.hi.max(-self.lo) }
+            Interval { lo: 0.0, hi: most(self.hi, -self.lo) }
         }
     }
 
     #[inline(always)]
     fn min(self, o: Interval) -> Interval {
-        Interval { lo: self.lo.min(o.lo), hi: self.hi.min(o.hi) }
+        Interval { lo: least(self.lo, o.lo), hi: least(self.hi, o.hi) }
     }
 
     #[inline(always)]
     fn max(self, o: Interval) -> Interval {
-        Interval { lo: self.lo.max(o.lo), hi: self.hi.max(o.hi) }
+        Interval { lo: most(self.lo, o.lo), hi: most(self.hi, o.hi) }
     }
 
     #[inline(always)]
     fn sqrt(self) -> Interval {
-        let root = Interval::outward(self.lo.max(0.0).sqrt(), self.hi.max(0.0).sqrt());
-        Interval { lo: root.lo.max(0.0), hi: root.hi }
+        Interval::outward(most(self.lo, 0.0).sqrt(), most(self.hi, 0.0).sqrt())
     }
 
     #[inline(never)]
@@ -325,7 +402,8 @@ impl Real for Interval {
     #[inline(never)]
     fn pow(self, p: f64) -> Interval {
         let a = self.abs();
-        Interval::library_within(a.lo.powf(p), a.hi.powf(p), 0.0, f64::INFINITY)
+        let most = if a.hi == 0.0 { 0.0 } else { f64::INFINITY };
+        Interval::library_within(a.lo.powf(p), a.hi.powf(p), 0.0, most)
     }
 
     fn sin_cos(self) -> (Interval, Interval) {
@@ -386,7 +464,9 @@ impl Real for Interval {
         let wide = Interval::library(a.lo.norm(b.lo, norm), a.hi.norm(b.hi, norm));
         let wide =
             if let Norm::P { .. } | Norm::Steep { .. } = norm { Interval::library(wide.lo, wide.hi) } else { wide };
-        Interval { lo: wide.lo.max(0.0), hi: wide.hi }
+        // What underflows is no less than either.
+        let most = if a.hi.max(b.hi) == 0.0 { 0.0 } else { wide.hi.max(a.hi).max(b.hi) };
+        Interval { lo: wide.lo.max(0.0), hi: most }
     }
 
     #[inline(always)]
@@ -397,12 +477,18 @@ impl Real for Interval {
 
     #[inline(never)]
     fn chain(d: [Interval; 3], a: Interval) -> [Interval; 3] {
-        [d[0] * a, d[1] * a, d[2] * a]
+        [d[0].times(a), d[1].times(a), d[2].times(a)]
     }
 
     #[inline(never)]
     fn chain2(d: [Interval; 3], a: Interval, e: [Interval; 3], b: Interval) -> [Interval; 3] {
-        [d[0] * a + e[0] * b, d[1] * a + e[1] * b, d[2] * a + e[2] * b]
+        let both = |axis: usize| d[axis].times(a).plus(e[axis].times(b));
+        [both(0), both(1), both(2)]
+    }
+
+    #[inline(never)]
+    fn scale_add_all(a: [Interval; 4], k: f64, b: [Interval; 4]) -> [Interval; 4] {
+        [a[0].scale_add(k, b[0]), a[1].scale_add(k, b[1]), a[2].scale_add(k, b[2]), a[3].scale_add(k, b[3])]
     }
 
     #[inline(never)]
@@ -419,7 +505,8 @@ impl Real for Interval {
         // The formula's own rounding is relative to its operands.
         let rounding = 16.0 * f64::EPSILON;
         let (lo_size, hi_size) = (self.lo.abs().max(other.lo.abs()), self.hi.abs().max(other.hi.abs()));
-        Interval::outward(lo - rounding * (lo_size + lo.abs()), hi + rounding * (hi_size + hi.abs()))
+        let (lo, hi) = (lo - rounding * (lo_size + lo.abs()), hi + rounding * (hi_size + hi.abs()));
+        Interval::signed(lo, hi, || (true, true))
     }
 
     #[inline(always)]
@@ -432,7 +519,8 @@ impl Real for Interval {
         const INEXACT: f64 = 1e-13;
         let lo_size = self.lo.abs().max(y.lo.abs()).max(z.lo.abs());
         let hi_size = self.hi.abs().max(y.hi.abs()).max(z.hi.abs());
-        Interval::outward(lo - INEXACT * (lo_size + lo.abs()), hi + INEXACT * (hi_size + hi.abs()))
+        let (lo, hi) = (lo - INEXACT * (lo_size + lo.abs()), hi + INEXACT * (hi_size + hi.abs()));
+        Interval::signed(lo, hi, || (true, true))
     }
 }
 
@@ -501,11 +589,13 @@ fn cosine(x: Interval) -> Interval {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Dual;
 
     #[test]
-    fn the_next_number_is_that_of_the_library() {
-        let mut numbers = vec![0.0, f64::MIN_POSITIVE, f64::MAX, f64::INFINITY, 1.0, 1.5, f64::EPSILON, 5e-324, 1e-323];
-        numbers.extend((0..2000u64).map(|n| f64::from_bits(n.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 1)));
+    fn the_next_number_is_that_of_the_library_but_of_0() {
+        assert_eq!([next_up(0.0), next_up(-0.0)].map(f64::to_bits), [0; 2]);
+        let mut numbers = vec![f64::MIN_POSITIVE, f64::MAX, f64::INFINITY, 1.0, 1.5, f64::EPSILON, 5e-324, 1e-323];
+        numbers.extend((1..2000u64).map(|n| f64::from_bits(n.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 1)));
         numbers.retain(|number| !number.is_nan());
         for number in numbers {
             for number in [number, -number] {
@@ -513,5 +603,68 @@ mod tests {
                 assert_eq!((-next_up(-number)).to_bits(), number.next_down().to_bits(), "{number:e}");
             }
         }
+    }
+
+    #[test]
+    fn nothing_that_is_0_is_rounded() {
+        let (zero, one, both) = (Interval::ZERO, Interval::new(0.5, 1.0), Interval::new(-2.0, 3.0));
+        for other in [one, -one, both, zero] {
+            for found in [zero * other, other * zero, zero * 2.0, other * 0.0, other * -0.0, zero / one, zero / -one] {
+                assert_eq!(found, zero, "{other:?}");
+            }
+            assert_eq!((zero + zero, zero - zero, other + other * 0.0), (zero, zero, other + zero), "{other:?}");
+        }
+        for p in [0.3, 1.0, 1.7, 2.0, 6.0] {
+            assert_eq!((zero.pow(p), zero.norm(zero, Norm::new(p))), (zero, zero), "{p}");
+        }
+        assert_eq!((zero.square(), zero.sqrt()), (zero, zero));
+        // Ends too.
+        let from = Interval::new(0.0, 0.25);
+        for found in [from + from, from * from, from * one, from / one, from * 3.0, from.square(), from.sqrt()] {
+            assert_eq!(found.lo(), 0.0, "{found:?}");
+        }
+        for found in [from * -one, -from / one, from * -3.0] {
+            assert_eq!(found.hi(), 0.0, "{found:?}");
+        }
+    }
+
+    /// A function of x alone has no slope along y and z, whatever it has along x.
+    #[test]
+    fn derivatives_that_are_0_stay_so() {
+        let x = Dual::variable(Interval::new(0.5, 1.5), 0);
+        assert_eq!(x.floor().d, [Interval::ALL, Interval::ZERO, Interval::ZERO]);
+        assert_eq!((x * x.exp2() + x.floor()).d[1..], [Interval::ZERO; 2]);
+    }
+
+    /// A map adds no rounding for what it has none of.
+    #[test]
+    fn maps_that_move_nothing_change_nothing() {
+        let point = Dual::point([Interval::new(-0.1, 0.3), Interval::point(0.7), Interval::ALL]);
+        let zero = Dual::constant(Interval::ZERO);
+        let [x, y, z] = point;
+        for (n, side) in point.into_iter().enumerate() {
+            let row = [0, 1, 2].map(|m| f64::from(m == n));
+            assert_eq!(x.scale_add(row[0], y.scale_add(row[1], z.scale_add(row[2], zero))), side);
+        }
+        let moved = x.scale_add(1.0, y.scale_add(0.0, Dual::constant(Interval::point(0.1))));
+        assert_eq!((moved.v, moved.d), (x.v + 0.1, x.d));
+    }
+
+    #[test]
+    fn what_underflows_is_rounded_to_normal_numbers() {
+        let (small, huge) = (Interval::point(1e-200), Interval::point(1e200));
+        let about = Interval::new(-1e-200, 1e-200);
+        for found in [small * small, small * 1e-200, small / huge, small.square(), small.pow(2.0)] {
+            assert!(found.lo() == 0.0 && found.hi() >= f64::MIN_POSITIVE, "{found:?}");
+        }
+        for found in [small * -small, small * -1e-200, -small / huge] {
+            assert!(found.lo() <= -f64::MIN_POSITIVE && found.hi() == 0.0, "{found:?}");
+        }
+        for found in [about * small, small * about, about * about, about * 1e-200, about * -1e-200, about / huge] {
+            assert!(found.lo() <= -f64::MIN_POSITIVE && found.hi() >= f64::MIN_POSITIVE, "{found:?}");
+        }
+        assert!(small.norm(Interval::ZERO, Norm::Euclid).contains(1e-200));
+        let gone = Interval::point(-1e5).exp2();
+        assert!(gone.lo() == 0.0 && gone.hi() >= f64::MIN_POSITIVE, "{gone:?}");
     }
 }

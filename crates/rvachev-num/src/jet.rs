@@ -40,18 +40,6 @@ const ZERO: Interval = Interval::ZERO;
 /// The two variables of each second derivative.
 const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
 
-/// A sum; 0 adds no rounding.
-#[inline]
-fn plus(a: Interval, b: Interval) -> Interval {
-    if a == ZERO {
-        b
-    } else if b == ZERO {
-        a
-    } else {
-        a + b
-    }
-}
-
 impl Jet {
     /// The point as three variables.
     #[must_use]
@@ -86,7 +74,7 @@ impl Jet {
     #[must_use]
     pub fn turn(&self, direction: [Interval; 3]) -> [Interval; 3] {
         let term = |i: usize, j: usize| self.bend(i, j).times(direction[j]);
-        [0, 1, 2].map(|i| plus(plus(term(i, 0), term(i, 1)), term(i, 2)))
+        [0, 1, 2].map(|i| term(i, 0).plus(term(i, 1)).plus(term(i, 2)))
     }
 
     fn constant(v: Interval) -> Jet {
@@ -101,7 +89,7 @@ impl Jet {
         if aa != ZERO {
             for (h, [i, j]) in h.iter_mut().zip(PAIRS) {
                 let both = if i == j && self.d[i] != ZERO { self.d[i].square() } else { self.d[i].times(self.d[j]) };
-                *h = plus(*h, both.times(aa));
+                *h = h.plus(both.times(aa));
             }
         }
         Jet { v, d, h }
@@ -113,11 +101,11 @@ impl Jet {
         let mut sum = self.chain(v, a, aa);
         let other = o.chain(v, b, bb);
         for axis in 0..3 {
-            sum.d[axis] = plus(sum.d[axis], other.d[axis]);
+            sum.d[axis] = sum.d[axis].plus(other.d[axis]);
         }
         for (at, [i, j]) in PAIRS.into_iter().enumerate() {
-            let mixed = plus(self.d[i].times(o.d[j]), self.d[j].times(o.d[i]));
-            sum.h[at] = plus(plus(sum.h[at], other.h[at]), mixed.times(ab));
+            let mixed = self.d[i].times(o.d[j]).plus(self.d[j].times(o.d[i]));
+            sum.h[at] = sum.h[at].plus(other.h[at]).plus(mixed.times(ab));
         }
         sum
     }
@@ -158,10 +146,10 @@ impl Add for Jet {
     fn add(self, o: Jet) -> Jet {
         let mut sum = Jet::constant(self.v + o.v);
         for axis in 0..3 {
-            sum.d[axis] = plus(self.d[axis], o.d[axis]);
+            sum.d[axis] = self.d[axis].plus(o.d[axis]);
         }
         for at in 0..6 {
-            sum.h[at] = plus(self.h[at], o.h[at]);
+            sum.h[at] = self.h[at].plus(o.h[at]);
         }
         sum
     }

@@ -182,6 +182,13 @@ pub trait Real:
         [d[0].mul_add(a, e[0] * b), d[1].mul_add(a, e[1] * b), d[2].mul_add(a, e[2] * b)]
     }
 
+    /// [`scale_add`](Real::scale_add) of values and derivatives.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn scale_add_all(a: [Self; 4], k: f64, b: [Self; 4]) -> [Self; 4] {
+        [a[0] * k + b[0], a[1] * k + b[1], a[2] * k + b[2], a[3] * k + b[3]]
+    }
+
     /// [`select`](Real::select) of derivatives.
     #[doc(hidden)]
     #[inline(always)]

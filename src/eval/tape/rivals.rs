@@ -18,7 +18,6 @@ pub(super) struct Rivals {
 /// One of them.
 #[derive(Clone)]
 struct Rival {
-    number: u32,
     /// Whether it counts negated.
     negated: bool,
     /// Nothing beyond is inside of it.
@@ -41,7 +40,7 @@ impl Rivals {
             Kind::Leaf(leaf) => {
                 let instance = program.instance(leaf);
                 let reach = if program.frames.is_empty() { instance.bounds } else { Bounds::ALL };
-                Some(Rival { number: instance.number, negated: edge.negated() != flip, reach })
+                Some(Rival { negated: edge.negated() != flip, reach })
             }
             _ => None,
         };
@@ -51,16 +50,21 @@ impl Rivals {
 }
 
 impl Tape {
-    /// The leaves of a plain min or max of them, each with its number, if that is what the program
-    /// is: the value is the least of theirs for a conjunction,
-    /// the largest for a disjunction.
-    pub(crate) fn rivals(&self) -> Option<(Op, impl Iterator<Item = (u32, Tape)>)> {
-        let Rivals { op, leaves } = self.rivals.as_ref()?;
-        let alone = |(leaf, rival): (&LeafStep, &Rival)| (rival.number, self.alone(leaf, rival.negated));
-        Some((*op, self.leaves.iter().zip(leaves).map(alone)))
+    /// Calls `visit` with each leaf, alone, and its place among those of the scene.
+    pub(crate) fn each_leaf(&self, mut visit: impl FnMut(u32, &Tape)) {
+        let Some(first) = self.leaves.first() else { return };
+        let mut alone = self.alone(first, false);
+        for (n, leaf) in self.leaves.iter().enumerate() {
+            if n > 0 {
+                alone.become_alone(self, leaf, false);
+            }
+            visit(leaf.leaf, &alone);
+        }
     }
 
-    /// The same without their numbers, in place of others whose memory they take.
+    /// The leaves of a plain min or max of them, if that is what the program is: the value is the
+    /// least of theirs for a conjunction, the largest for a disjunction. They come in place of
+    /// others whose memory they take.
     pub(crate) fn rivals_into<'m>(&self, others: &'m mut Vec<Tape>) -> Option<(Op, &'m [Tape])> {
         let Rivals { op, leaves } = self.rivals.as_ref()?;
         for (n, (leaf, rival)) in self.leaves.iter().zip(leaves).enumerate() {

@@ -98,7 +98,8 @@ pub trait Warp: Debug + Clone + Send + Sync + 'static {
         None
     }
 
-    /// Of a map that jumps within a box: two that do not, one of which it is at each point there.
+    /// Of a map that jumps within a box, where its slopes have no bound: two that do not, one of
+    /// which it is at each point there.
     fn sheets(&self, _hull: [Interval; 3]) -> Option<[Self; 2]> {
         None
     }

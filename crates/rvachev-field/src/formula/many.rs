@@ -3,7 +3,7 @@
 //! Only finite ranges of what is defined throughout are dealt with; a lane in which anything else
 //! turns up becomes doubtful. Ends are moved outward by between one and two units in the last
 //! place, which covers the rounding to nearest of one operation: with s = fl(e),
-//! `|s − e| ≤ 2⁻⁵³·|s| + 2⁻¹⁰⁷⁵ < 2⁻⁵²·|s| + 2⁻¹⁰²²`, and what is subtracted from s is at least the
+//! `|s − e| ≤ 2⁻⁵³·|s| + 2⁻¹⁰⁷⁵ < 2⁻⁵²·|s| + 10⁻²⁷⁰`, and what is subtracted from s is at least the
 //! next float away.
 
 use fidget::context::{BinaryOpcode, UnaryOpcode};
@@ -52,7 +52,7 @@ impl Many {
 /// By how much the end of a range is moved outward.
 #[inline(always)]
 fn step(x: f64) -> f64 {
-    x.abs() * f64::EPSILON + f64::MIN_POSITIVE
+    x.abs() * f64::EPSILON + Interval::TINY
 }
 
 #[inline(always)]

@@ -38,7 +38,9 @@ impl Sure {
 fn library(lo: f64, hi: f64) -> Interval {
     let wide = Interval::new(lo, hi);
     let size = wide.magnitude();
-    if size.is_finite() { wide.inflate(Interval::LIBRARY_ULPS * f64::EPSILON * size) } else { wide }
+    // What is 0 may have underflowed.
+    let error = (Interval::LIBRARY_ULPS * f64::EPSILON * size).max(Interval::TINY);
+    if size.is_finite() { wide.inflate(error) } else { wide }
 }
 
 fn within(range: Interval, lo: f64, hi: f64) -> Interval {

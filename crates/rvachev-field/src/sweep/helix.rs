@@ -89,14 +89,26 @@ impl HelixWarp {
         angle * (-self.pitch / TAU)
     }
 
-    /// Whether the angle, as it is measured, jumps within a box.
-    fn jumps(&self, hull: [Interval; 3]) -> bool {
+    /// A point of space, by how far it is from the nearest turn's section.
+    #[inline(always)]
+    fn unwound<R: Real>(&self, p: [R; 3], fold: R) -> [R; 3] {
+        let offset = match self.turn {
+            Turn::Nearest => 0.0,
+            Turn::Above => -self.pitch,
+            Turn::Below => self.pitch,
+        };
+        let y = fold + (self.middle + offset);
+        [p[0].norm_as(p[1], Euclid) - self.radius, y, (p[2] - y) * self.stretch]
+    }
+
+    /// Whether the angle, as it is measured, jumps within a box over which `fold` has this range.
+    fn jumps(&self, fold: Interval) -> bool {
         let middle = match self.sheet {
             Sheet::Both => 0.0,
             Sheet::Ahead => PI,
             Sheet::Behind => -PI,
         };
-        (self.fold(hull) * (-TAU / self.pitch) - middle).magnitude() >= PI * (1.0 - 1e-14)
+        (fold * (-TAU / self.pitch) - middle).magnitude() >= PI * (1.0 - 1e-14)
     }
 }
 
@@ -106,13 +118,7 @@ impl Warp for HelixWarp {
 
     #[inline(always)]
     fn inverse<R: Real>(&self, p: [R; 3]) -> [R; 3] {
-        let offset = match self.turn {
-            Turn::Nearest => 0.0,
-            Turn::Above => -self.pitch,
-            Turn::Below => self.pitch,
-        };
-        let y = self.fold(p) + (self.middle + offset);
-        [p[0].norm_as(p[1], Euclid) - self.radius, y, (p[2] - y) * self.stretch]
+        self.unwound(p, self.fold(p))
     }
 
     #[cfg(test)]
@@ -171,8 +177,9 @@ impl Warp for HelixWarp {
     /// ```
     fn slopes(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3] {
         let hull = p.map(Dual::value);
-        let [_, y, along] = self.inverse(hull);
-        let [y_slopes, along_slopes] = if self.jumps(hull) {
+        let fold = self.fold(hull);
+        let [_, y, along] = self.unwound(hull, fold);
+        let [y_slopes, along_slopes] = if self.jumps(fold) {
             // Slopes say nothing of the jump.
             [[Interval::ALL; 3]; 2]
         } else {
@@ -189,6 +196,6 @@ impl Warp for HelixWarp {
 
     fn sheets(&self, hull: [Interval; 3]) -> Option<[HelixWarp; 2]> {
         let sheets = [Sheet::Ahead, Sheet::Behind].map(|sheet| HelixWarp { sheet, ..*self });
-        (self.jumps(hull) && !sheets[0].jumps(hull)).then_some(sheets)
+        (self.jumps(self.fold(hull)) && !sheets[0].jumps(sheets[0].fold(hull))).then_some(sheets)
     }
 }
