@@ -12,6 +12,8 @@ use super::absent::write_3mf;
 #[cfg(not(feature = "exr"))]
 use super::absent::write_exr;
 use super::file::write_whole;
+use super::glb::write_glb_on;
+use super::obj::write_obj_on;
 use super::png::{Rows, write_png_rows};
 use super::watched::Watched;
 #[cfg(feature = "threemf")]
@@ -19,8 +21,7 @@ use super::write_3mf;
 #[cfg(feature = "exr")]
 use super::write_exr;
 use super::{
-    LengthUnit, write_dxf, write_gif, write_glb, write_obj, write_ply, write_ply_points, write_png, write_stl,
-    write_stl_ascii, write_svg,
+    LengthUnit, write_dxf, write_gif, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg,
 };
 use crate::geom::{Image, Mesh, PointCloud, Polyline};
 use crate::{Cancelled, Run};
@@ -105,8 +106,8 @@ const BYTES: u64 = 30;
 /// The formats of a mesh, by extension.
 const MESH_FORMATS: [(&str, Writer<Mesh, SaveSettings>); 5] = [
     ("3mf", |mesh, settings, out| write_3mf(mesh, settings, out)),
-    ("glb", |mesh, settings, out| write_glb(mesh, settings, out)),
-    ("obj", |mesh, settings, out| write_obj(mesh, settings, out)),
+    ("glb", |mesh, settings, out| write_glb_on(mesh, settings, out.run(), out)),
+    ("obj", |mesh, settings, out| write_obj_on(mesh, settings, out.run(), out)),
     ("ply", |mesh, _, out| write_ply(mesh, out)),
     ("stl", |mesh, settings, out| if settings.ascii { write_stl_ascii(mesh, out) } else { write_stl(mesh, out) }),
 ];

@@ -19,6 +19,10 @@ impl<'a, T> Watched<'a, T> {
         Watched { inner, run, passed: 0, all }
     }
 
+    pub(super) fn run(&self) -> &'a Run {
+        self.run
+    }
+
     /// Lets some bytes pass.
     fn pass(&mut self, bytes: impl FnOnce(&mut T) -> io::Result<usize>) -> io::Result<usize> {
         self.run.check().map_err(io::Error::other)?;
