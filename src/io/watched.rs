@@ -1,6 +1,6 @@
 //! Readers and writers under a run.
 
-use std::io::{self, Read, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use crate::Run;
 
@@ -19,6 +19,7 @@ impl<'a, T> Watched<'a, T> {
         Watched { inner, run, passed: 0, all }
     }
 
+    /// The run.
     pub(super) fn run(&self) -> &'a Run {
         self.run
     }
@@ -48,5 +49,11 @@ impl<T: Write> Write for Watched<'_, T> {
 
     fn flush(&mut self) -> io::Result<()> {
         self.inner.flush()
+    }
+}
+
+impl<T: Seek> Seek for Watched<'_, T> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.inner.seek(to)
     }
 }

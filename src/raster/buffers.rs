@@ -7,7 +7,7 @@ use super::error::RasterError;
 use super::layers::{Facing, LayerSource, Tile};
 use super::target::{NOTHING, REVERSED, Target};
 use super::view::RasterView;
-use crate::{Cancelled, Run};
+use crate::{Cancelled, Image, Run};
 use rvachev_num::Meter;
 
 /// What is seen at a pixel.
@@ -218,9 +218,21 @@ impl Buffers {
     /// All depths in length units, row by row from the top left; +∞ where nothing is.
     #[must_use]
     pub fn depths(&self) -> Vec<f64> {
+        // A run that nobody else holds is not cancelled.
+        self.depth_image(&Run::default()).map_or_else(|Cancelled| Vec::new(), |image| image.pixels().to_vec())
+    }
+
+    /// All [depths](Buffers::depths) as a picture.
+    pub(super) fn depth_image(&self, run: &Run) -> Result<Image<f64>, Cancelled> {
+        const SIDE: usize = Tile::SIDE as usize;
         let RasterView { width, height, .. } = self.view;
-        let at = |(x, y)| self.depth(x, y).unwrap_or(f64::INFINITY);
-        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(at).collect()
+        let [across, _] = Tile::grid(width, height);
+        Image::by_rows([width, height], f64::INFINITY, run, |y, row| {
+            let (band, line) = ((y / Tile::SIDE * across) as usize, (y % Tile::SIDE) as usize * SIDE);
+            for (part, target) in row.chunks_mut(SIDE).zip(&self.tiles[band..]) {
+                part.copy_from_slice(&target.depth[line..line + part.len()]);
+            }
+        })
     }
 
     fn place(&self, x: u32, y: u32) -> Option<(&Target, usize)> {

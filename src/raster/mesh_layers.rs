@@ -51,6 +51,23 @@ impl RasterView {
 
     /// [`layers`](RasterView::layers) with a choice of threads, a cancel token and a progress sink.
     ///
+    /// ```
+    /// use rvachev::raster::{Buffers, ClosedMesh, Facing, RasterView};
+    /// use rvachev::{Camera, MeshSettings, Progress, Run, Solid};
+    ///
+    /// let mesh = Solid::sphere(1.0).mesh(&MeshSettings::default())?;
+    /// let view = RasterView::new(&Camera::framing(&mesh.bounds()), 80, 60)?;
+    /// // One run serves a job after the other; each tells from 0 on.
+    /// let progress = Some(Progress::new(|part| println!("{:.0} %", 100.0 * part)));
+    /// let run = Run { threads: 2, progress, ..Run::default() };
+    /// let layers = view.layers_with(ClosedMesh::new(&mesh)?, &run)?;
+    /// let mut buffers = Buffers::new(&view);
+    /// buffers.draw_with(&layers, 0, Facing::Front, &run)?;
+    /// assert_eq!(buffers.picture_with(&[&layers], &[[200; 3]], &run)?.pixel(0, 0), Some([0; 4]));
+    /// assert_eq!(buffers.depth_picture_with(&run)?, buffers.depth_picture()?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     ///
     /// [`Cancelled`].

@@ -139,9 +139,20 @@ impl Buffers {
     ///
     /// None but an internal one.
     pub fn depth_picture(&self) -> Result<Image, RasterError> {
-        let depths = self.depths();
-        let seen = || depths.iter().copied().filter(|d| d.is_finite());
-        let (near, far) = seen().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
+        self.depth_picture_with(&Run::default())
+    }
+
+    /// [`depth_picture`](Buffers::depth_picture) with a choice of threads, a cancel token and a
+    /// progress sink.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`depth_picture`](Buffers::depth_picture), and [`RasterError::Cancelled`].
+    pub fn depth_picture_with(&self, run: &Run) -> Result<Image, RasterError> {
+        let run = run.stage(0.0, 1.0);
+        let [gathering, shading] = run.stages([1.0, 1.0]);
+        let depths = self.depth_image(&gathering)?;
+        let (near, far) = depths.range().unwrap_or_default();
         let range = (far - near).max(f64::MIN_POSITIVE);
         let grey = |depth: &f64| {
             if !depth.is_finite() {
@@ -151,7 +162,6 @@ impl Buffers {
             let level = level.round() as u8;
             [level, level, level, 255]
         };
-        let view = self.view();
-        Ok(Image::new(view.width(), view.height(), depths.iter().map(grey).collect())?)
+        Ok(depths.map_on([0; 4], &shading, grey)?)
     }
 }

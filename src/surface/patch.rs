@@ -150,18 +150,34 @@ impl ParametricSurface {
         self.mesh_with(settings, &Run::default())
     }
 
-    /// [`mesh`](ParametricSurface::mesh) with a cancel token and a progress sink; on one thread.
+    /// [`mesh`](ParametricSurface::mesh) with a choice of threads, a cancel token and a progress
+    /// sink.
+    ///
+    /// ```
+    /// use rvachev::surface::{ParametricSurface, PatchError, PatchSettings};
+    /// use rvachev::{Run, Superellipsoid};
+    ///
+    /// let surface = ParametricSurface::of(&Superellipsoid::new([3.0, 2.0, 1.0], 0.5, 0.5))?;
+    /// let settings = PatchSettings { rows: 200, columns: 400, ..PatchSettings::default() };
+    /// let run = Run::default();
+    /// assert_eq!(surface.mesh_with(&settings, &run)?.triangles().len(), 2 * 199 * 400);
+    /// // Any clone of the token, on any thread, stops the work.
+    /// run.cancel.cancel();
+    /// assert!(matches!(surface.mesh_with(&settings, &run), Err(PatchError::Cancelled(_))));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     ///
     /// Those of [`mesh`](ParametricSurface::mesh), and [`PatchError::Cancelled`].
     pub fn mesh_with(&self, settings: &PatchSettings, run: &Run) -> Result<Mesh, PatchError> {
         let run = run.stage(0.0, 1.0);
-        let quads = self.quad_mesh_with(settings, &run.stage(0.0, 0.7))?;
-        run.check()?;
-        let mesh = quads.to_mesh()?;
-        run.report(1.0);
-        Ok(mesh)
+        let [making, cutting] = run.stages([1.0, 1.0]);
+        let mesh = self.quad_mesh_with(settings, &making)?.to_mesh_with(&cutting);
+        mesh.map_err(|error| match error {
+            MeshError::Cancelled(cancelled) => cancelled.into(),
+            error => error.into(),
+        })
     }
 
     /// The same as quadrilaterals in double precision, with triangles at poles and clipped ends;

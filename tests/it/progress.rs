@@ -2,18 +2,13 @@
 
 use std::sync::{Arc, Mutex};
 
-use glam::DVec3;
 use rvachev::{
-    Camera, CancelToken, CellSize, ContourSettings, Mesh, MeshSettings, MeshSolid, Plane, Progress, Quality,
-    RenderSettings, Run, Solid, Style, Superellipsoid, deg,
-    fit::Segments,
-    raster::{Buffers, ClosedMesh, Facing, RasterView},
-    subdivision::{ControlGrid, SubdivisionRevolution, Tension},
-    surface::{ParametricSurface, PatchSettings, Spacing},
+    Camera, CellSize, ContourSettings, Mesh, MeshSettings, MeshSolid, Plane, Progress, Quality, RenderSettings, Run,
+    Solid, Style, deg,
 };
 
 /// A run, and what it reports.
-fn recorded() -> (Run, Arc<Mutex<Vec<f64>>>) {
+pub fn recorded() -> (Run, Arc<Mutex<Vec<f64>>>) {
     let seen = Arc::new(Mutex::new(Vec::new()));
     let sink = seen.clone();
     let progress = Some(Progress::new(move |fraction| sink.lock().unwrap().push(fraction)));
@@ -21,7 +16,7 @@ fn recorded() -> (Run, Arc<Mutex<Vec<f64>>>) {
 }
 
 /// Checks that the reports rise from about 0 to 1 in many small steps.
-fn flows(what: &str, seen: &Mutex<Vec<f64>>, least: usize, widest: f64) {
+pub fn flows(what: &str, seen: &Mutex<Vec<f64>>, least: usize, widest: f64) {
     let seen = seen.lock().unwrap();
     assert!(seen.windows(2).all(|pair| pair[0] < pair[1]), "{what}: {seen:?}");
     assert_eq!(seen.last(), Some(&1.0), "{what}");
@@ -29,7 +24,7 @@ fn flows(what: &str, seen: &Mutex<Vec<f64>>, least: usize, widest: f64) {
     assert!(seen.len() >= least && gap <= widest, "{what}: {} reports, {gap:.3} at once", seen.len());
 }
 
-fn part() -> Solid {
+pub fn part() -> Solid {
     let holes = Solid::cylinder(0.3, 4.0).translate([1.5, 0.0, 0.0]).repeat_polar(6);
     (Solid::superellipsoid([2.5, 2.5, 0.7], 0.4, 1.0) | Solid::torus(1.8, 0.4)) - holes
 }
@@ -109,77 +104,4 @@ fn clearances_and_imports_tell_how_far_they_are() {
         Solid::from_mesh_with(&open, MeshSolid::default(), &run).unwrap();
         flows("import", &seen, 20, 0.25);
     }
-}
-
-/// Cancels the work once it has told so much, and how far it went on.
-fn stopped(at: f64) -> (Run, Arc<Mutex<Vec<f64>>>) {
-    let (cancel, seen) = (CancelToken::new(), Arc::new(Mutex::new(Vec::new())));
-    let (token, sink) = (cancel.clone(), seen.clone());
-    let progress = Progress::new(move |fraction| {
-        sink.lock().unwrap().push(fraction);
-        if fraction >= at {
-            token.cancel();
-        }
-    });
-    (Run { threads: 2, cancel, progress: Some(progress) }, seen)
-}
-
-/// The work tells how far it is, and ends soon after it is cancelled on the way or before.
-fn heeds(what: &str, least: usize, widest: f64, work: impl Fn(&Run) -> bool) {
-    let (run, seen) = recorded();
-    assert!(work(&run), "{what}");
-    flows(what, &seen, least, widest);
-    for at in [0.3, 0.7] {
-        let (run, seen) = stopped(at);
-        assert!(!work(&run), "{what} was cancelled at {at}");
-        let last = *seen.lock().unwrap().last().unwrap();
-        assert!(last < at + 1.5 * widest, "{what}: cancelled at {at}, went on to {last}");
-    }
-    let run = Run::default();
-    run.cancel.cancel();
-    assert!(!work(&run), "{what} was cancelled before");
-}
-
-#[test]
-fn surfaces_tell_how_far_they_are_and_are_cancelled() {
-    let leaf = Superellipsoid::new([1.0, 1.5, 0.7], 0.4, 0.8);
-    let surface = ParametricSurface::of(&leaf).unwrap();
-    let grid = PatchSettings { rows: 300, columns: 300, ..PatchSettings::default() };
-    heeds("patch", 50, 0.35, |run| surface.mesh_with(&grid, run).is_ok());
-    heeds("quadrilaterals", 50, 0.1, |run| surface.quad_mesh_with(&grid, run).is_ok());
-    let even = PatchSettings { spacing: Spacing::Chord(1e-3), ..grid };
-    heeds("patch within a tolerance", 50, 0.7, |run| surface.mesh_with(&even, run).is_ok());
-    heeds("points of a surface", 20, 0.1, |run| surface.sample_with(100_000, 7, run).is_ok());
-    let ball = SubdivisionRevolution::ellipsoid([1.0, 2.0, 3.0]).unwrap();
-    heeds("revolution", 50, 0.1, |run| ball.limit_mesh_with([6, 6], run).is_ok());
-    heeds("bare revolution", 50, 0.1, |run| ball.subdivided_mesh_with([6, 6], run).is_ok());
-    let points: Vec<DVec3> = (0..25).map(|i| [i % 5, i / 5, i % 3].map(f64::from).into()).collect();
-    let sheet = ControlGrid::new(&points, [5, 5], [false; 2], [Tension::CUBIC; 2]).unwrap();
-    heeds("sheet", 50, 0.3, |run| sheet.limit_mesh_with(6, run).is_ok());
-}
-
-#[test]
-fn buffers_tell_how_far_they_are_and_are_cancelled() {
-    let settings = MeshSettings { cell: CellSize::LongestSide(100), ..MeshSettings::default() };
-    let mesh = part().mesh(&settings).unwrap();
-    let closed = ClosedMesh::new(&mesh).unwrap();
-    let camera = Camera::framing(&part().bounds().unwrap());
-    let view = RasterView::new(&camera, 900, 700).unwrap();
-    heeds("layers", 8, 0.3, |run| view.layers_with(closed, run).is_ok());
-    heeds("open layers", 8, 0.3, |run| view.surface_with(&mesh, run).is_ok());
-    let layers = view.layers(closed);
-    let buffers = || Buffers::new(&view);
-    heeds("drawing", 50, 0.3, |run| buffers().draw_with(&layers, 0, Facing::Front, run).is_ok());
-    heeds("classifying", 50, 0.3, |run| buffers().classify_with(&layers, run).is_ok());
-    let mut drawn = buffers();
-    drawn.draw(&layers, 0, Facing::Front).unwrap();
-    heeds("picture of buffers", 50, 0.3, |run| drawn.picture_with(&[&layers], &[[200; 3]], run).is_ok());
-}
-
-#[test]
-fn segments_tell_how_far_they_are_and_are_cancelled() {
-    let mesh = part().mesh(&MeshSettings { cell: CellSize::LongestSide(48), ..MeshSettings::default() }).unwrap();
-    heeds("segments", 50, 0.4, |run| Segments::of_mesh_by_creases_with(&mesh, deg(40.0), run).is_ok());
-    let labels: Vec<u32> = (0..mesh.triangles().len() as u32).map(|t| t % 40).collect();
-    heeds("labelled segments", 30, 0.1, |run| Segments::of_mesh_with(&mesh, &labels, run).is_ok());
 }
