@@ -48,7 +48,7 @@ impl<P> Coded<P> {
     /// Pixels of 16 bits a channel, each of `N` channels.
     fn words<const N: usize>(color: ColorType, pixel: impl Fn(&P) -> [u16; N] + 'static) -> Coded<P> {
         let row = move |pixels: &[P], out: &mut Vec<u8>| {
-            out.extend(pixels.iter().flat_map(|p| pixel(p)).flat_map(u16::to_be_bytes));
+            out.extend(pixels.iter().flat_map(&pixel).flat_map(u16::to_be_bytes));
         };
         Coded { color, depth: BitDepth::Sixteen, row: Box::new(row) }
     }

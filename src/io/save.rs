@@ -100,6 +100,9 @@ pub struct SaveSettings {
 /// A writer of one format, for `T` by settings `S`.
 type Writer<T, S> = fn(&T, &S, &mut Watched<'_, &mut BufWriter<File>>) -> io::Result<()>;
 
+/// Pictures, and how long each is shown.
+type Animation<'a> = (&'a [Image], Duration);
+
 /// Bytes of a file to a vertex, a point or a triangle, about.
 const BYTES: u64 = 30;
 
@@ -227,7 +230,7 @@ impl<P: Pixel> Image<P> {
     /// use rvachev::error::SaveError;
     /// use rvachev::{Image, Run};
     ///
-    /// let picture = Image::new(2, 1, vec![[200, 100, 50, 255]; 2])?;
+    /// let picture = Image::new(2, 1, vec![[200_u8, 100, 50, 255]; 2])?;
     /// let path = std::env::temp_dir().join("rvachev_picture_save_on.png");
     /// let run = Run::default();
     /// run.cancel.cancel();
@@ -280,7 +283,7 @@ impl Image {
         path: impl AsRef<Path>,
         run: &Run,
     ) -> Result<(), SaveError> {
-        let formats: &[(&str, Writer<(&[Image], Duration), ()>)] =
+        let formats: &[(&str, Writer<Animation<'_>, ()>)] =
             &[("gif", |(pictures, pause), (), out| write_gif_on(pictures, *pause, out.run(), out))];
         save(&(pictures, pause), &(), path.as_ref(), formats, 0, run)
     }
