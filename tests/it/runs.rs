@@ -35,7 +35,7 @@ fn stopped(at: f64) -> (Run, Arc<Mutex<Vec<f64>>>) {
 
 /// The work tells how far it is, in `least` steps of at most `widest`, which are counts of what is
 /// done; it ends with nothing done if it was cancelled before, and soon after it is on the way.
-fn heeds<T, E: Display>(what: &str, least: usize, widest: f64, work: impl Fn(&Run) -> Result<T, E>) {
+pub fn heeds<T, E: Display>(what: &str, least: usize, widest: f64, work: impl Fn(&Run) -> Result<T, E>) {
     let (run, seen) = recorded();
     assert!(work(&run).is_ok(), "{what}");
     flows(what, &seen, least, widest);
@@ -123,7 +123,7 @@ fn segments_heed_a_run() {
 }
 
 /// A mesh with everything that it can carry.
-fn laden() -> Mesh {
+pub fn laden() -> Mesh {
     let leaf = Superellipsoid::new([1.0, 1.0, 2.0], 0.4, 0.8);
     let settings = PatchSettings { rows: 200, columns: 200, ..PatchSettings::default() };
     let mesh = ParametricSurface::of(&leaf).unwrap().mesh(&settings).unwrap();
@@ -155,64 +155,71 @@ fn moved_meshes_heed_a_run() {
     assert_eq!(mesh.twist_with(deg(20.0), &one).unwrap(), mesh.twist(deg(20.0)).unwrap());
 }
 
-/// What is saved to a path on a run.
-type Saver<'a> = (&'a str, usize, &'a dyn Fn(&Path, &Run) -> Result<(), SaveError>);
+/// A file that is saved on a run: told of in `least` steps, and left as it was when cancelled.
+fn stays(path: &Path, least: usize, save: impl Fn(&Path, &Run) -> Result<(), SaveError>) {
+    let name = path.file_name().unwrap().to_string_lossy();
+    let (run, seen) = recorded();
+    save(path, &run).unwrap();
+    flows(&name, &seen, least, 0.8);
+    let before = fs::read(path).unwrap();
+    assert!(before.len() > 100, "{name}");
+    fs::write(path, "what was there").unwrap();
+    // Before it begins, and on the way.
+    for at in [f64::NEG_INFINITY, 0.2] {
+        let (run, seen) = stopped(at);
+        if at < 0.0 {
+            run.cancel.cancel();
+        }
+        let saved = save(path, &run);
+        assert!(matches!(saved, Err(SaveError::Cancelled(_))), "{name} at {at}: {saved:?}");
+        assert_eq!(fs::read(path).unwrap(), b"what was there", "{name} at {at}");
+        let told = seen.lock().unwrap().last().copied().unwrap_or(0.0);
+        assert!(told < 1.0 && (at > 0.0 || told == 0.0), "{name} at {at}: {told}");
+    }
+    save(path, &Run { threads: 1, ..Run::default() }).unwrap();
+    assert!(fs::read(path).unwrap() == before, "{name}: the run changes the file");
+}
 
 #[test]
 fn files_heed_a_run_and_stay_as_they_are() {
-    let folder = std::env::temp_dir().join(format!("rvachev-runs-{}", std::process::id()));
+    let folder = std::env::temp_dir().join(format!("rvachev-runs-of-files-{}", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
+    let at = |name: &str| folder.join(name);
+
     let mesh = laden();
+    let whole = SaveSettings { crease_normals: true, ..SaveSettings::default() };
+    let text = SaveSettings { ascii: true, ..SaveSettings::default() };
+    stays(&at("text.stl"), 20, |path, run| mesh.save_on(path, &text, run));
+    let mut formats = vec!["stl", "obj", "ply", "glb"];
+    formats.extend(cfg!(feature = "threemf").then_some("3mf"));
+    for extension in &formats {
+        stays(&at(&format!("mesh.{extension}")), 20, |path, run| mesh.save_on(path, &whole, run));
+    }
     let cloud = PointCloud::new(mesh.positions().iter().map(|p| p.as_dvec3()).collect()).unwrap();
+    stays(&at("cloud.ply"), 5, |path, run| cloud.save_on(path, run));
+
     let numbers = |y: u32, x: u32| f64::from((x * 7919 + y * 104_729) % 1009);
     let depth = Image::new(300, 400, (0..120_000).map(|i| numbers(i / 300, i % 300)).collect()).unwrap();
     let picture = depth.map(|d| [*d as u8, (*d / 4.0) as u8, 7, 255]);
     let normal = depth.map(|d| Vec3::new((*d / 1009.0) as f32, 0.0, 0.0));
+    stays(&at("picture.png"), 50, |path, run| picture.save_on(path, run));
+    stays(&at("depth.png"), 50, |path, run| depth.save_on(path, run));
+    stays(&at("normal.png"), 50, |path, run| normal.save_on(path, run));
     let pictures: Vec<Image> = (0..30).map(|i| Image::new(8, 8, vec![[i, 2 * i, 9, 255]; 64]).unwrap()).collect();
+    let pause = Duration::from_millis(40);
+    stays(&at("moving.gif"), 20, |path, run| Image::save_animation_on(&pictures, pause, path, run));
+    let mut others = 8;
+    if cfg!(feature = "exr") {
+        stays(&at("depth.exr"), 10, |path, run| depth.save_on(path, run));
+        stays(&at("normal.exr"), 10, |path, run| normal.save_on(path, run));
+        others += 2;
+    }
+
     let circle = |i: u32| Polyline::closed((0..400).map(|k| DVec2::from_angle(0.01 * f64::from(k + i))).collect());
     let lines: Vec<Polyline> = (0..40).map(circle).collect();
-    let whole = SaveSettings { crease_normals: true, ..SaveSettings::default() };
-    let text = SaveSettings { ascii: true, ..SaveSettings::default() };
-    let savers: [Saver<'_>; 14] = [
-        ("mesh.stl", 20, &|path, run| mesh.save_on(path, &SaveSettings::default(), run)),
-        ("text.stl", 20, &|path, run| mesh.save_on(path, &text, run)),
-        ("mesh.obj", 20, &|path, run| mesh.save_on(path, &whole, run)),
-        ("mesh.ply", 20, &|path, run| mesh.save_on(path, &SaveSettings::default(), run)),
-        ("mesh.glb", 20, &|path, run| mesh.save_on(path, &SaveSettings::default(), run)),
-        ("mesh.3mf", 20, &|path, run| mesh.save_on(path, &SaveSettings::default(), run)),
-        ("cloud.ply", 5, &|path, run| cloud.save_on(path, run)),
-        ("picture.png", 50, &|path, run| picture.save_on(path, run)),
-        ("depth.png", 50, &|path, run| depth.save_on(path, run)),
-        ("depth.exr", 10, &|path, run| depth.save_on(path, run)),
-        ("normal.exr", 10, &|path, run| normal.save_on(path, run)),
-        ("moving.gif", 20, &|path, run| Image::save_animation_on(&pictures, Duration::from_millis(40), path, run)),
-        ("lines.svg", 50, &|path, run| Polyline::save_all_on(&lines, path, run)),
-        ("lines.dxf", 50, &|path, run| Polyline::save_all_on(&lines, path, run)),
-    ];
-    for (name, least, save) in savers {
-        let path = folder.join(name);
-        let (run, seen) = recorded();
-        save(&path, &run).unwrap();
-        flows(name, &seen, least, 0.8);
-        let before = fs::read(&path).unwrap();
-        assert!(before.len() > 100, "{name}");
-        fs::write(&path, "what was there").unwrap();
-        // Before it begins, and on the way.
-        for at in [f64::NEG_INFINITY, 0.2] {
-            let (run, seen) = stopped(at);
-            if at < 0.0 {
-                run.cancel.cancel();
-            }
-            let saved = save(&path, &run);
-            assert!(matches!(saved, Err(SaveError::Cancelled(_))), "{name} at {at}: {saved:?}");
-            assert_eq!(fs::read(&path).unwrap(), b"what was there", "{name} at {at}");
-            let told = seen.lock().unwrap().last().copied().unwrap_or(0.0);
-            assert!(told < 1.0 && (at > 0.0 || told == 0.0), "{name} at {at}: {told}");
-        }
-        save(&path, &Run { threads: 1, ..Run::default() }).unwrap();
-        assert!(fs::read(&path).unwrap() == before, "{name}: the run changes the file");
-    }
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), savers.len(), "nothing else is left");
+    stays(&at("lines.svg"), 50, |path, run| Polyline::save_all_on(&lines, path, run));
+    stays(&at("lines.dxf"), 50, |path, run| Polyline::save_all_on(&lines, path, run));
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), formats.len() + others, "nothing else is left");
     fs::remove_dir_all(&folder).unwrap();
 }
 
