@@ -117,7 +117,7 @@ fn what_rays_see_heeds_a_run() {
 #[test]
 fn segments_heed_a_run() {
     let mesh = part().mesh(&MeshSettings { cell: CellSize::LongestSide(48), ..MeshSettings::default() }).unwrap();
-    heeds("segments", 200, 0.25, |run| Segments::of_mesh_by_creases_with(&mesh, deg(40.0), run));
+    heeds("segments", 200, 0.15, |run| Segments::of_mesh_by_creases_with(&mesh, deg(40.0), run));
     let labels: Vec<u32> = (0..mesh.triangles().len() as u32).map(|t| t % 40).collect();
     heeds("labelled segments", 30, 0.05, |run| Segments::of_mesh_with(&mesh, &labels, run));
 }

@@ -59,7 +59,7 @@ pub(super) fn watershed(
     crease: f64,
     run: &Run,
 ) -> Result<Vec<u32>, Cancelled> {
-    let [measuring, flooding, joining] = run.stages([1.0; 3]);
+    let [measuring, flooding, small, convex] = run.stages([4.0, 4.0, 2.0, 1.0]);
     let between = |i: usize, j: usize| link([points[i], points[j]], [normals[i], normals[j]], crease);
     let open = |i: usize| near.of(i).iter().map(|j| *j as usize).filter(move |j| between(i, *j) == Link::Open);
     let is_creased = |i: usize| near.of(i).iter().any(|j| between(i, *j as usize) == Link::Crease);
@@ -73,8 +73,8 @@ pub(super) fn watershed(
         floods.flood(i, away[i], open(i));
     }
     let mut labels: Vec<usize> = (0..points.len()).map(|i| floods.summit_of(i)).collect();
-    join_small(points, near, &mut labels, &joining)?;
-    join_convex(points, normals, near, &between, &mut labels, &joining)?;
+    join_small(points, near, &mut labels, &small)?;
+    join_convex(points, normals, near, &between, &mut labels, &convex)?;
     let mut numbers = BTreeMap::new();
     let numbered = labels.iter().map(|summit| {
         let next = numbers.len() as u32;
@@ -187,8 +187,10 @@ fn join_convex(
     labels: &mut [usize],
     run: &Run,
 ) -> Result<(), Cancelled> {
+    // Each round but the last makes one of two.
+    let meter = Meter::new(run, by_label(labels).len());
     loop {
-        run.check()?;
+        meter.step()?;
         let members = by_label(labels);
         // Links over each border: open ones, and over a crease.
         let mut borders: BTreeMap<[usize; 2], [usize; 2]> = BTreeMap::new();
@@ -230,8 +232,10 @@ fn concave(points: &[DVec3], normals: &[DVec3], a: &[usize], b: &[usize]) -> f64
 /// Joins small and flat segments to the one that they have the longest border with.
 fn join_small(points: &[DVec3], near: &Neighbours, labels: &mut [usize], run: &Run) -> Result<(), Cancelled> {
     let mut left_alone = Vec::new();
+    // Each round but the last joins one, or leaves it alone.
+    let meter = Meter::new(run, by_label(labels).len() + 1);
     loop {
-        run.check()?;
+        meter.step()?;
         let members = by_label(labels);
         let is_small = |of: &Vec<usize>| {
             let [least, middle, _] = Principal::of(of.iter().map(|i| points[*i])).variances;
