@@ -68,29 +68,22 @@ impl Contours {
     /// own.
     #[must_use]
     pub fn outlines(&self) -> Vec<Outline<'_>> {
-        let boxes: Vec<[DVec2; 2]> = self.lines.iter().map(extent).collect();
         let areas: Vec<f64> = self.lines.iter().map(Polyline::area).collect();
-        let mut slots = vec![usize::MAX; self.lines.len()];
-        let mut outlines = Vec::new();
-        for (number, outer) in self.lines.iter().enumerate() {
-            if areas[number] > 0.0 {
-                slots[number] = outlines.len();
-                outlines.push(Outline { outer, holes: Vec::new() });
-            }
-        }
-        for (hole, line) in self.lines.iter().enumerate() {
-            let (false, Some(&p)) = (areas[hole] > 0.0, line.points().first()) else { continue };
+        let lines = || self.lines.iter().zip(&areas);
+        let outer: Vec<_> =
+            lines().filter(|(_, area)| **area > 0.0).map(|(line, area)| (extent(line), *area)).collect();
+        let outlines = lines().filter(|(_, area)| **area > 0.0);
+        let mut outlines: Vec<_> = outlines.map(|(outer, _)| Outline { outer, holes: Vec::new() }).collect();
+        for (hole, area) in lines().filter(|(_, area)| area.is_nan() || **area <= 0.0) {
+            let Some(&p) = hole.points().first() else { continue };
             let is_around = |number: &usize| {
-                let [min, max] = boxes[*number];
-                areas[*number] > -areas[hole]
-                    && p.cmpge(min).all()
-                    && p.cmple(max).all()
-                    && self.lines[*number].winds_about(p)
+                let ([min, max], around) = outer[*number];
+                around > -area && p.cmpge(min).all() && p.cmple(max).all() && outlines[*number].outer.winds_about(p)
             };
             // The innermost of those around it.
-            let around = (0..self.lines.len()).filter(is_around).min_by(|a, b| areas[*a].total_cmp(&areas[*b]));
+            let around = (0..outer.len()).filter(is_around).min_by(|a, b| outer[*a].1.total_cmp(&outer[*b].1));
             if let Some(number) = around {
-                outlines[slots[number]].holes.push(line);
+                outlines[number].holes.push(hole);
             }
         }
         outlines

@@ -8,7 +8,11 @@
 //!           y ↓ height
 //! ```
 
+use rayon::prelude::*;
+use rvachev_num::Meter;
+
 use super::transfer::{from_linear, to_byte};
+use crate::{Cancelled, Run};
 
 /// A picture: rows of pixels from top to bottom. What a pixel is says what the picture is of:
 ///
@@ -117,6 +121,44 @@ impl<P> Image<P> {
     }
 }
 
+impl<P: Copy + Send + Sync> Image<P> {
+    /// A picture of `width` × `height`, neither of them 0, whose rows are `blank` before `fill`
+    /// makes them, given their number, on the threads of a run.
+    pub(crate) fn by_rows(
+        [width, height]: [u32; 2],
+        blank: P,
+        run: &Run,
+        fill: impl Fn(u32, &mut [P]) + Sync,
+    ) -> Result<Image<P>, Cancelled> {
+        let meter = Meter::new(run, height);
+        let mut pixels = vec![blank; width as usize * height as usize];
+        run.install(|| {
+            pixels.par_chunks_exact_mut(width as usize).enumerate().try_for_each(|(y, row)| {
+                meter.check()?;
+                fill(y as u32, row);
+                meter.add(1);
+                Ok::<_, Cancelled>(())
+            })
+        })?;
+        Ok(Image { width, height, pixels })
+    }
+
+    /// [`map`](Image::map) on the threads of a run.
+    pub(crate) fn map_on<Q: Copy + Send + Sync>(
+        &self,
+        blank: Q,
+        run: &Run,
+        f: impl Fn(&P) -> Q + Sync,
+    ) -> Result<Image<Q>, Cancelled> {
+        Image::by_rows([self.width, self.height], blank, run, |y, row| {
+            let from = &self.pixels[y as usize * self.width as usize..];
+            for (to, from) in row.iter_mut().zip(from) {
+                *to = f(from);
+            }
+        })
+    }
+}
+
 impl Image {
     /// Whether every pixel has alpha 255.
     #[must_use]
@@ -148,7 +190,27 @@ impl Image<[f32; 4]> {
     /// As 16-bit sRGB; light beyond what a screen shows is cut off.
     #[must_use]
     pub fn to_16bit(&self) -> Image<[u16; 4]> {
-        self.map(|light| encoded(*light).map(|c| (65535.0 * c).round() as u16))
+        // A run that nobody else holds is not cancelled.
+        self.to_16bit_with(&Run::default()).unwrap_or_else(|Cancelled| self.map(|_| [0; 4]))
+    }
+
+    /// [`to_16bit`](Image::to_16bit) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// ```
+    /// use rvachev::{Image, Run};
+    ///
+    /// let light = Image::new(1, 1, vec![[1.0_f32, 0.0, 0.0, 1.0]])?;
+    /// let picture = light.to_16bit_with(&Run { threads: 1, ..Run::default() })?;
+    /// assert_eq!(picture.pixels(), [[65535, 0, 0, 65535]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`].
+    pub fn to_16bit_with(&self, run: &Run) -> Result<Image<[u16; 4]>, Cancelled> {
+        let level = |c: f32| (65535.0 * c).round() as u16;
+        self.map_on([0; 4], &run.stage(0.0, 1.0), |light| encoded(*light).map(level))
     }
 }
 
@@ -177,7 +239,7 @@ impl Image<f64> {
 }
 
 /// A depth as a grey from 1 to `most`; 0 where there is none.
-fn grey(v: f64, white: f64, black: f64, most: f64) -> f64 {
+pub(crate) fn grey(v: f64, white: f64, black: f64, most: f64) -> f64 {
     if !v.is_finite() {
         return 0.0;
     }

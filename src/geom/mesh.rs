@@ -121,6 +121,9 @@ pub enum MeshError {
         /// Its corner, 0 to 2.
         corner: usize,
     },
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] crate::Cancelled),
 }
 
 /// The place of the first one of a list that something holds for. Threads share long lists.

@@ -6,6 +6,7 @@
 
 mod camera;
 mod contours;
+mod each;
 pub(crate) mod figures;
 mod image;
 mod legend;
@@ -21,8 +22,9 @@ mod view;
 
 pub use camera::{Camera, CameraError, Projection, Rays};
 pub use contours::{Contours, Outline};
-pub(crate) use image::to_8bit;
+pub(crate) use each::each;
 pub use image::{Image, ImageError};
+pub(crate) use image::{grey, to_8bit};
 pub(crate) use legend::{label, legend};
 pub(crate) use mesh::Findings;
 pub use mesh::{Mesh, MeshError};

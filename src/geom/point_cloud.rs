@@ -2,6 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
+use crate::Cancelled;
+
 /// Points in space, each with a normal and a colour if the cloud has them.
 ///
 /// ```
@@ -52,6 +54,9 @@ pub enum PointCloudError {
         /// Number of points.
         points: usize,
     },
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl PointCloud {

@@ -13,7 +13,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Mesh, MeshError};
+use super::{Mesh, MeshError, each};
+use crate::Run;
 
 /// A mesh of quadrilaterals and triangles, in double precision.
 ///
@@ -41,6 +42,9 @@ pub struct QuadMesh {
 
 /// Normals whose cosine is above this are one: 10⁻³ apart, in radians.
 const SAME_NORMAL: f64 = 1.0 - 5e-7;
+
+/// Faces and vertices that a thread takes at once.
+const CHUNK: usize = 4096;
 
 /// What a corner of a face knows that its vertex does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,28 +99,64 @@ impl QuadMesh {
     ///
     /// If a position is beyond single precision.
     pub fn to_mesh(&self) -> Result<Mesh, MeshError> {
-        let halves: Vec<[[usize; 3]; 2]> = (0..self.quads.len()).map(|face| self.halves(face)).collect();
-        let cut = self.quads.iter().zip(&halves).flat_map(|(quad, halves)| halves.map(|half| half.map(|k| quad[k])));
-        let triangles: Vec<[u32; 3]> = cut.chain(self.triangles.iter().copied()).collect();
-        let cut =
-            self.quad_corners.iter().zip(&halves).flat_map(|(quad, halves)| halves.map(|half| half.map(|k| quad[k])));
-        let corners: Vec<[Corner; 3]> = cut.chain(self.triangle_corners.iter().copied()).collect();
+        self.to_mesh_with(&Run::default())
+    }
 
-        let creased = triangles
-            .iter()
-            .flatten()
-            .zip(corners.iter().flatten())
-            .any(|(&vertex, corner)| corner.normal.dot(self.normals[vertex as usize]) < SAME_NORMAL);
-        let mut mesh = Mesh::new(self.positions.iter().map(|p| p.as_vec3()).collect(), triangles)?;
+    /// [`to_mesh`](QuadMesh::to_mesh) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// ```
+    /// use rvachev::subdivision::SubdivisionRevolution;
+    /// use rvachev::Run;
+    ///
+    /// let quads = SubdivisionRevolution::ellipsoid([2.0, 1.0, 0.7])?.limit_mesh([4, 4])?;
+    /// let mesh = quads.to_mesh_with(&Run { threads: 1, ..Run::default() })?;
+    /// assert_eq!(mesh, quads.to_mesh()?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Those of [`to_mesh`](QuadMesh::to_mesh), and [`MeshError::Cancelled`].
+    pub fn to_mesh_with(&self, run: &Run) -> Result<Mesh, MeshError> {
+        let run = run.stage(0.0, 1.0);
+        let mesh = run.install(|| self.cut(&run))?;
+        run.report(1.0);
+        Ok(mesh)
+    }
+
+    fn cut(&self, run: &Run) -> Result<Mesh, MeshError> {
+        let [cutting, naming, moving, creasing, bending, texturing] = run.stages([1.0, 1.0, 1.0, 2.0, 1.0, 1.0]);
+        let halves = each(self.quads.len(), CHUNK, &cutting, |face| self.halves(face))?;
+        // Quadrilaterals first, two triangles each.
+        let count = 2 * halves.len() + self.triangles.len();
+        let triangle = |t: usize| match halves.get(t / 2) {
+            Some(half) => half[t % 2].map(|k| self.quads[t / 2][k]),
+            None => self.triangles[t - 2 * halves.len()],
+        };
+        let corners = |t: usize| match halves.get(t / 2) {
+            Some(half) => half[t % 2].map(|k| self.quad_corners[t / 2][k]),
+            None => self.triangle_corners[t - 2 * halves.len()],
+        };
+        let has_corners = !(self.quad_corners.is_empty() && self.triangle_corners.is_empty());
+        let triangles = each(count, CHUNK, &naming, triangle)?;
+        let positions = each(self.positions.len(), CHUNK, &moving, |v| self.positions[v].as_vec3())?;
+        let mut mesh = Mesh::new(positions, triangles)?;
         if !self.normals.is_empty() {
             mesh = mesh.with_normals(self.normals.iter().map(|n| n.as_vec3()).collect())?;
         }
-        if creased {
-            mesh = mesh.with_corner_normals(corners.iter().map(|c| c.map(|c| c.normal.as_vec3())).collect())?;
-        }
-        if !corners.is_empty() {
-            let texture = corners.iter().map(|c| c.map(|c| c.texture.as_vec2().to_array())).collect();
-            mesh = mesh.with_corner_texture(texture)?;
+        if has_corners {
+            let is_creased = |t: usize| {
+                let differs =
+                    |(vertex, corner): (u32, Corner)| corner.normal.dot(self.normals[vertex as usize]) < SAME_NORMAL;
+                triangle(t).into_iter().zip(corners(t)).any(differs)
+            };
+            if each(count, CHUNK, &creasing, is_creased)?.contains(&true) {
+                mesh = mesh.with_corner_normals(each(count, CHUNK, &bending, |t| {
+                    corners(t).map(|corner| corner.normal.as_vec3())
+                })?)?;
+            }
+            let texture = |t: usize| corners(t).map(|corner| corner.texture.as_vec2().to_array());
+            mesh = mesh.with_corner_texture(each(count, CHUNK, &texturing, texture)?)?;
         }
         Ok(mesh)
     }

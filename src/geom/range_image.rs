@@ -11,9 +11,13 @@
 //! Sources: G. Steele, D. Lea, C. Flood, *Fast splittable pseudorandom number generators*
 //! (2014), for the generator; G. Box, M. Muller (1958) for normal deviates.
 
-use glam::{DAffine3, DVec2, DVec3, Vec3};
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec2, Vec3};
+use rvachev_num::Meter;
 
 use super::{Image, Intrinsics, PointCloud, PointCloudError};
+use crate::{Cancelled, Run};
 
 /// A depth image of a camera whose geometry is known.
 ///
@@ -32,7 +36,7 @@ use super::{Image, Intrinsics, PointCloud, PointCloudError};
 #[derive(Clone, Debug, PartialEq)]
 pub struct RangeImage {
     depth: Image<f64>,
-    normals: Option<Image<Vec3>>,
+    normals: Option<Arc<Image<Vec3>>>,
     intrinsics: Intrinsics,
     pose: DAffine3,
 }
@@ -62,15 +66,21 @@ pub struct Noise {
 
 /// What is wrong with a range image or its noise.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{parameter} is {value}; allowed: {allowed}")]
 #[non_exhaustive]
-pub struct RangeImageError {
-    /// The parameter.
-    pub parameter: &'static str,
-    /// Its value.
-    pub value: String,
-    /// What is allowed.
-    pub allowed: &'static str,
+pub enum RangeImageError {
+    /// A parameter is out of its range.
+    #[error("{parameter} is {value}; allowed: {allowed}")]
+    Parameter {
+        /// The parameter.
+        parameter: &'static str,
+        /// Its value.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl RangeImage {
@@ -82,7 +92,7 @@ impl RangeImage {
     /// If the image is not of the size that the intrinsics are for, a focal length is not above
     /// 0, or a number of the camera is not finite.
     pub fn new(depth: Image<f64>, intrinsics: Intrinsics, pose: DAffine3) -> Result<RangeImage, RangeImageError> {
-        let error = |parameter, value: String, allowed| Err(RangeImageError { parameter, value, allowed });
+        let error = |parameter, value: String, allowed| Err(RangeImageError::Parameter { parameter, value, allowed });
         let (size, wanted) = ((depth.width(), depth.height()), (intrinsics.width, intrinsics.height));
         if size != wanted {
             return error("size of the depth image", format!("{size:?}"), "that of the intrinsics");
@@ -102,7 +112,7 @@ impl RangeImage {
 
     /// With a unit normal for every pixel, in the world.
     pub(crate) fn with_normals(mut self, normals: Image<Vec3>) -> RangeImage {
-        self.normals = Some(normals);
+        self.normals = Some(Arc::new(normals));
         self
     }
 
@@ -130,9 +140,31 @@ impl RangeImage {
     ///
     /// If a parameter is out of its range.
     pub fn with_noise(&self, noise: &Noise) -> Result<RangeImage, RangeImageError> {
+        self.with_noise_on(noise, &Run::default())
+    }
+
+    /// [`with_noise`](RangeImage::with_noise) on a [`Run`]: a choice of threads, a cancel token and
+    /// a progress sink. The noise does not depend on it.
+    ///
+    /// ```
+    /// use rvachev::range_image::Noise;
+    /// use rvachev::{Camera, Run, Solid};
+    ///
+    /// let ball = Solid::sphere(1.0);
+    /// let range = ball.layers(&Camera::framing(&ball.bounds()?), 64, 48)?.range_image();
+    /// let noise = Noise { deviation: 0.01, missing: 0.1, seed: 7 };
+    /// let alone = range.with_noise_on(&noise, &Run { threads: 1, ..Run::default() })?;
+    /// assert_eq!(alone, range.with_noise(&noise)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Those of [`with_noise`](RangeImage::with_noise), and [`RangeImageError::Cancelled`].
+    pub fn with_noise_on(&self, noise: &Noise, run: &Run) -> Result<RangeImage, RangeImageError> {
         let error = |parameter, value: f64, allowed| {
             let value = value.to_string();
-            Err(RangeImageError { parameter, value, allowed })
+            Err(RangeImageError::Parameter { parameter, value, allowed })
         };
         if !(noise.deviation >= 0.0 && noise.deviation.is_finite()) {
             return error("deviation", noise.deviation, "0 or more, finite");
@@ -140,19 +172,24 @@ impl RangeImage {
         if !(0.0..=1.0).contains(&noise.missing) {
             return error("missing", noise.missing, "0 to 1");
         }
-        let mut index = 0u64;
-        let depth = self.depth.map(|depth| {
+        let noisy = |depth: f64, index: u64| {
             let mut random = Random::new(noise.seed, index);
-            let pixel = self.pixel(index);
-            index += 1;
             if random.unit() < noise.missing || !depth.is_finite() {
                 return f64::INFINITY;
             }
             let error = noise.deviation * random.normal();
             // Along the ray: less of it along the axis.
-            depth + error * self.cosine(pixel)
-        });
-        Ok(RangeImage { depth, ..self.clone() })
+            depth + error * self.cosine(self.pixel(index))
+        };
+        let [width, height] = [self.depth.width(), self.depth.height()];
+        let depth = Image::by_rows([width, height], f64::INFINITY, &run.stage(0.0, 1.0), |y, row| {
+            let first = u64::from(y) * u64::from(width);
+            let depths = &self.depth.pixels()[first as usize..];
+            for ((to, depth), index) in row.iter_mut().zip(depths).zip(first..) {
+                *to = noisy(*depth, index);
+            }
+        })?;
+        Ok(RangeImage { depth, normals: self.normals.clone(), ..*self })
     }
 
     /// The middle of the pixel with this number.
@@ -173,17 +210,50 @@ impl RangeImage {
     ///
     /// If depths are so large that a point is not finite.
     pub fn points(&self, coordinates: Coordinates) -> Result<PointCloud, PointCloudError> {
+        self.points_with(coordinates, &Run::default())
+    }
+
+    /// [`points`](RangeImage::points) with a cancel token and a progress sink; on one thread.
+    ///
+    /// ```
+    /// use rvachev::range_image::Coordinates;
+    /// use rvachev::{Camera, Progress, Run, Solid};
+    ///
+    /// let ball = Solid::sphere(1.0);
+    /// let range = ball.layers(&Camera::framing(&ball.bounds()?), 64, 48)?.range_image();
+    /// let progress = Some(Progress::new(|part| println!("{:.0} %", 100.0 * part)));
+    /// let cloud = range.points_with(Coordinates::World, &Run { progress, ..Run::default() })?;
+    /// assert_eq!(cloud, range.points(Coordinates::World)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Those of [`points`](RangeImage::points), and [`PointCloudError::Cancelled`].
+    pub fn points_with(&self, coordinates: Coordinates, run: &Run) -> Result<PointCloud, PointCloudError> {
+        let run = run.stage(0.0, 1.0);
+        run.check()?;
         let world = coordinates == Coordinates::World;
-        let seen = || (0u64..).zip(self.depth.pixels()).filter(|(_, depth)| depth.is_finite());
-        let positions = seen().map(|(index, depth)| {
-            let p = self.intrinsics.unproject(self.pixel(index), *depth);
-            if world { self.pose.transform_point3(p) } else { p }
-        });
-        let cloud = PointCloud::new(positions.collect())?;
-        let Some(normals) = &self.normals else { return Ok(cloud) };
         let back = self.pose.matrix3.transpose();
-        let turned = |n: DVec3| if world { n } else { back * n };
-        cloud.with_normals(seen().map(|(i, _)| turned(normals.pixels()[i as usize].as_dvec3()).as_vec3()).collect())
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        let reading = run.stage(0.0, 0.9);
+        let meter = Meter::new(&reading, self.depth.height());
+        let width = self.depth.width() as usize;
+        for (row, first) in self.depth.pixels().chunks_exact(width).zip((0u64..).step_by(width)) {
+            meter.step()?;
+            for (depth, index) in row.iter().zip(first..).filter(|(depth, _)| depth.is_finite()) {
+                let p = self.intrinsics.unproject(self.pixel(index), *depth);
+                positions.push(if world { self.pose.transform_point3(p) } else { p });
+                if let Some(all) = &self.normals {
+                    let n = all.pixels()[index as usize];
+                    normals.push(if world { n } else { (back * n.as_dvec3()).as_vec3() });
+                }
+            }
+        }
+        let cloud = PointCloud::new(positions)?;
+        let cloud = if self.normals.is_some() { cloud.with_normals(normals)? } else { cloud };
+        run.report(1.0);
+        Ok(cloud)
     }
 }
 

@@ -4,7 +4,7 @@
 use std::io::{self, Write};
 
 #[cfg(not(feature = "exr"))]
-pub(super) fn write_exr<P>(_: &crate::geom::Image<P>, _: impl Write) -> io::Result<()> {
+pub(super) fn write_exr_on<P>(_: &crate::geom::Image<P>, _: &crate::Run, _: impl Write) -> io::Result<()> {
     Err(lacks("exr"))
 }
 

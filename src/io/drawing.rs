@@ -10,7 +10,9 @@
 use std::io::{self, Write};
 
 use glam::DVec2;
+use rvachev_num::Meter;
 
+use crate::Run;
 use crate::geom::Polyline;
 
 /// Outlines are this part of the longest side wide.
@@ -39,7 +41,13 @@ const RESOLUTION: f64 = 1e-6;
 ///
 /// Those of the writer; [`InvalidInput`](io::ErrorKind::InvalidInput), before anything is written,
 /// for a coordinate that is not finite, or not within ±10³⁰⁰.
-pub fn write_svg(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
+pub fn write_svg(lines: &[Polyline], out: impl Write) -> io::Result<()> {
+    write_svg_on(lines, &Run::default(), out)
+}
+
+/// The same on a run: told how many points are written, and cancelled at each.
+pub(super) fn write_svg_on(lines: &[Polyline], run: &Run, mut out: impl Write) -> io::Result<()> {
+    let meter = metered(lines, run)?;
     check(lines)?;
     let points = || lines.iter().flat_map(|line| line.points());
     let min = points().copied().reduce(DVec2::min).unwrap_or(DVec2::ZERO);
@@ -68,6 +76,7 @@ pub fn write_svg(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
         write!(out, "<path {fill} {style} d=\"")?;
         for line in chosen {
             for (i, p) in line.points().iter().enumerate() {
+                meter.step().map_err(io::Error::other)?;
                 write!(out, "{}{} {}", if i == 0 { "M" } else { "L" }, short(p.x), short(-p.y))?;
             }
             if closed {
@@ -93,7 +102,13 @@ fn short(x: f64, places: usize) -> String {
 ///
 /// Those of the writer; [`InvalidInput`](io::ErrorKind::InvalidInput), before anything is written,
 /// for a coordinate that is not finite, or not within ±10³⁰⁰.
-pub fn write_dxf(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
+pub fn write_dxf(lines: &[Polyline], out: impl Write) -> io::Result<()> {
+    write_dxf_on(lines, &Run::default(), out)
+}
+
+/// The same on a run: told how many points are written, and cancelled at each.
+pub(super) fn write_dxf_on(lines: &[Polyline], run: &Run, mut out: impl Write) -> io::Result<()> {
+    let meter = metered(lines, run)?;
     check(lines)?;
     let mut pair = |code: u32, value: &dyn std::fmt::Display| write!(out, "{code}\n{value}\n");
     pair(0, &"SECTION")?;
@@ -116,6 +131,7 @@ pub fn write_dxf(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
         }
         pair(70, &u8::from(line.is_closed()))?;
         for p in line.points() {
+            meter.step().map_err(io::Error::other)?;
             pair(0, &"VERTEX")?;
             pair(8, &"0")?;
             pair(10, &p.x)?;
@@ -127,6 +143,12 @@ pub fn write_dxf(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
     }
     pair(0, &"ENDSEC")?;
     pair(0, &"EOF")
+}
+
+/// Counts points, unless the run is cancelled.
+fn metered<'a>(lines: &[Polyline], run: &'a Run) -> io::Result<Meter<'a>> {
+    run.check().map_err(io::Error::other)?;
+    Ok(Meter::new(run, lines.iter().map(|line| line.points().len()).sum::<usize>()))
 }
 
 /// Beyond, sizes of drawings are no numbers any more.

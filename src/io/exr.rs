@@ -7,6 +7,8 @@ use exr::prelude::{
 };
 use glam::{DVec3, Vec3};
 
+use super::watched::Watched;
+use crate::Run;
 use crate::geom::Image;
 
 /// A picture whose pixels can be written as floats: linear light, depths and values, normals,
@@ -71,7 +73,13 @@ impl sealed::Floats for DVec3 {
 /// # Errors
 ///
 /// Those of the writer.
-pub fn write_exr<P: Floats>(image: &Image<P>, mut out: impl Write) -> io::Result<()> {
+pub fn write_exr<P: Floats>(image: &Image<P>, out: impl Write) -> io::Result<()> {
+    write_exr_on(image, &Run::default(), out)
+}
+
+/// The same on a run: told how much is compressed, and cancelled at each block of rows.
+pub(super) fn write_exr_on<P: Floats>(image: &Image<P>, run: &Run, mut out: impl Write) -> io::Result<()> {
+    run.check().map_err(io::Error::other)?;
     let channel = |index: usize| {
         let samples = image.pixels().iter().map(|pixel| pixel.channel(index)).collect();
         AnyChannel::new(P::NAMES[index], FlatSamples::F32(samples))
@@ -81,7 +89,9 @@ pub fn write_exr<P: Floats>(image: &Image<P>, mut out: impl Write) -> io::Result
     let layer = Layer::new(size, LayerAttributes::default(), Encoding::SMALL_LOSSLESS, channels);
     // The format wants to go back and write where its parts are.
     let mut bytes = Cursor::new(Vec::new());
-    let written = File::from_layer(layer).write().non_parallel().to_buffered(&mut bytes);
+    let file = File::from_layer(layer);
+    let writing = file.write().non_parallel().on_progress(|fraction| run.report(fraction));
+    let written = writing.to_buffered(Watched::new(&mut bytes, 0, run));
     written.map_err(|error| match error {
         exr::error::Error::Io(error) => error,
         other => io::Error::other(other.to_string()),

@@ -5,7 +5,9 @@ use std::time::Duration;
 
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, Frame, RgbaImage};
+use rvachev_num::Meter;
 
+use crate::Run;
 use crate::geom::Image;
 
 /// Writes pictures as an animated GIF without end, each shown for `pause` (a GIF counts in
@@ -15,6 +17,11 @@ use crate::geom::Image;
 ///
 /// Those of the writer; that there is no picture; that a side is beyond 65535.
 pub fn write_gif(pictures: &[Image], pause: Duration, out: impl Write) -> io::Result<()> {
+    write_gif_on(pictures, pause, &Run::default(), out)
+}
+
+/// The same on a run: told how many pictures are written, and cancelled at each.
+pub(super) fn write_gif_on(pictures: &[Image], pause: Duration, run: &Run, out: impl Write) -> io::Result<()> {
     if pictures.is_empty() {
         return Err(io::Error::other("no picture to write"));
     }
@@ -25,7 +32,9 @@ pub fn write_gif(pictures: &[Image], pause: Duration, out: impl Write) -> io::Re
     // Of the speeds from 1 to 30, one that is fast and not yet seen.
     let mut encoder = GifEncoder::new_with_speed(out, 10);
     encoder.set_repeat(Repeat::Infinite).map_err(error)?;
+    let meter = Meter::new(run, pictures.len());
     for picture in pictures {
+        meter.step().map_err(io::Error::other)?;
         let bytes = picture.pixels().as_flattened().to_vec();
         let Some(buffer) = RgbaImage::from_raw(picture.width(), picture.height(), bytes) else {
             return Err(io::Error::other("the pixels do not make a picture"));

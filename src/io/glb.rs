@@ -26,6 +26,7 @@ use super::normal::corner_normal;
 use super::split::Split;
 use super::unit::LengthUnit;
 use super::{SaveSettings, too_many};
+use crate::Run;
 use crate::geom::Mesh;
 
 /// Writes a mesh as GLB, with normals, colours and texture coordinates if it has them; a length
@@ -51,6 +52,11 @@ use crate::geom::Mesh;
 /// Those of the writer, and [`io::ErrorKind::InvalidInput`] for a file of more than 4 GiB, the
 /// most that the format can hold.
 pub fn write_glb(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::Result<()> {
+    write_glb_on(mesh, settings, &Run::default(), out)
+}
+
+/// The same, which ends where a run is cancelled.
+pub(super) fn write_glb_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
     let carried = |corner: usize, _| {
         let (t, k) = (corner / 3, corner % 3);
         let normal = corner_normal(mesh, corner).map(|n| n.to_array().map(f32::to_bits));
@@ -58,7 +64,7 @@ pub fn write_glb(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::R
         let texture = mesh.corner_texture().map(|uv| uv[t][k].map(f32::to_bits));
         (normal, color, texture)
     };
-    let split = Split::new(mesh, carried).ok_or_else(|| too_many("GLB"))?;
+    let split = Split::new(mesh, "GLB", run, carried)?;
     let layout = Layout::new(mesh, &split);
     let mut json = layout.json(settings.unit);
     while !json.len().is_multiple_of(4) {

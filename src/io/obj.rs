@@ -21,7 +21,7 @@ use super::SaveSettings;
 use super::normal::corner_normal;
 use super::split::Split;
 use super::text::{Number, Numbers};
-use super::too_many;
+use crate::Run;
 use crate::geom::Mesh;
 
 /// Writes a mesh as OBJ, with texture coordinates if it has them, and with normals if it has
@@ -45,13 +45,18 @@ use crate::geom::Mesh;
 /// Those of the writer, and [`io::ErrorKind::InvalidInput`] for normals or texture of a mesh
 /// with more than 2³² − 1 corners.
 pub fn write_obj(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::Result<()> {
+    write_obj_on(mesh, settings, &Run::default(), out)
+}
+
+/// The same, which ends where a run is cancelled.
+pub(super) fn write_obj_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
     let mut out = BufWriter::with_capacity(1 << 16, out);
     writeln!(out, "# written by rvachev")?;
     for p in mesh.positions() {
         writeln!(out, "v {}", Numbers(p.to_array()))?;
     }
     let split = |is_wanted: bool, key: &dyn Fn(usize) -> [u32; 3]| match is_wanted {
-        true => Split::new(mesh, |corner, _| key(corner)).map(Some).ok_or_else(|| too_many("OBJ")),
+        true => Split::new(mesh, "OBJ", run, |corner, _| key(corner)).map(Some),
         false => Ok(None),
     };
     let texture = |corner: usize| mesh.corner_texture().map_or([0.0; 2], |uv| uv[corner / 3][corner % 3]);

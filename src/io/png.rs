@@ -1,12 +1,13 @@
-//! PNG, through the `image` crate.
+//! PNG, through the `png` crate, row by row.
 
 use std::io::{self, Write};
 
 use glam::Vec3;
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder};
+use png::{BitDepth, ColorType, Encoder, EncodingError};
+use rvachev_num::Meter;
 
-use crate::geom::Image;
+use crate::Run;
+use crate::geom::{Image, grey};
 
 /// A picture that can be written as PNG. This trait is closed.
 ///
@@ -20,11 +21,36 @@ use crate::geom::Image;
 pub trait Colors: sealed::Colors {}
 
 mod sealed {
-    use super::{ExtendedColorType, Image, io};
+    use super::{Coded, Image, io};
 
     pub trait Colors: Sized {
-        /// The bytes of the pixels, in the machine's order, and what they are.
-        fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)>;
+        /// What the pixels are in a file.
+        fn coded(image: &Image<Self>) -> io::Result<Coded<Self>>;
+    }
+}
+
+/// What pixels are in a file, and what appends the bytes of a row of them.
+pub struct Coded<P> {
+    color: ColorType,
+    depth: BitDepth,
+    row: Row<P>,
+}
+
+/// Appends the bytes of a row.
+type Row<P> = Box<dyn Fn(&[P], &mut Vec<u8>)>;
+
+impl<P> Coded<P> {
+    /// Pixels of 8 bits a channel.
+    fn bytes(color: ColorType, row: impl Fn(&[P], &mut Vec<u8>) + 'static) -> Coded<P> {
+        Coded { color, depth: BitDepth::Eight, row: Box::new(row) }
+    }
+
+    /// Pixels of 16 bits a channel, each of `N` channels.
+    fn words<const N: usize>(color: ColorType, pixel: impl Fn(&P) -> [u16; N] + 'static) -> Coded<P> {
+        let row = move |pixels: &[P], out: &mut Vec<u8>| {
+            out.extend(pixels.iter().flat_map(&pixel).flat_map(u16::to_be_bytes));
+        };
+        Coded { color, depth: BitDepth::Sixteen, row: Box::new(row) }
     }
 }
 
@@ -35,10 +61,29 @@ mod sealed {
 /// Those of the writer; for normals, that there is a component beyond −1 to 1; for leaves, that
 /// a number does not fit into 16 bits.
 pub fn write_png<P: Colors>(image: &Image<P>, out: impl Write) -> io::Result<()> {
-    let (bytes, color) = P::encode(image)?;
-    PngEncoder::new(out).write_image(&bytes, image.width(), image.height(), color).map_err(|error| match error {
-        image::ImageError::IoError(error) => error,
-        other => io::Error::other(other),
+    write_png_on(image, &Run::default(), out)
+}
+
+/// The same on a run: told how many rows are written, and cancelled at each.
+pub(super) fn write_png_on<P: Colors>(image: &Image<P>, run: &Run, out: impl Write) -> io::Result<()> {
+    run.check().map_err(io::Error::other)?;
+    let Coded { color, depth, row } = P::coded(image)?;
+    let mut encoder = Encoder::new(out, image.width(), image.height());
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    // What is looked at once is not worth the time of the smallest file.
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    let meter = Meter::new(run, image.height());
+    let mut bytes = Vec::new();
+    streamed(encoder, |stream| {
+        for pixels in image.pixels().chunks_exact(image.width() as usize) {
+            meter.step().map_err(io::Error::other)?;
+            bytes.clear();
+            row(pixels, &mut bytes);
+            stream.write_all(&bytes)?;
+        }
+        Ok(())
     })
 }
 
@@ -52,99 +97,109 @@ pub(super) fn write_png_rows(
     rows: impl FnOnce(&mut Rows<'_>) -> io::Result<()>,
     out: impl Write,
 ) -> io::Result<()> {
-    let mut encoder = png::Encoder::new(out, size[0], size[1]);
-    encoder.set_color(if has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut file = encoder.write_header()?;
-    let mut stream = file.stream_writer()?;
-    rows(&mut |pixels| {
-        if has_alpha {
-            return stream.write_all(pixels.as_flattened());
-        }
-        let colors: Vec<u8> = pixels.iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
-        stream.write_all(&colors)
-    })?;
+    let mut encoder = Encoder::new(out, size[0], size[1]);
+    encoder.set_color(if has_alpha { ColorType::Rgba } else { ColorType::Rgb });
+    encoder.set_depth(BitDepth::Eight);
+    streamed(encoder, |stream| {
+        rows(&mut |pixels| {
+            if has_alpha {
+                return stream.write_all(pixels.as_flattened());
+            }
+            let colors: Vec<u8> = pixels.iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
+            stream.write_all(&colors)
+        })
+    })
+}
+
+/// Writes a file whose bytes come bit by bit.
+fn streamed<W: Write>(
+    encoder: Encoder<'_, W>,
+    rows: impl FnOnce(&mut png::StreamWriter<'_, W>) -> io::Result<()>,
+) -> io::Result<()> {
+    let error = |error| match error {
+        EncodingError::IoError(error) => error,
+        other => io::Error::other(other),
+    };
+    let mut file = encoder.write_header().map_err(error)?;
+    let mut stream = file.stream_writer().map_err(error)?;
+    rows(&mut stream)?;
     // An incomplete picture is an error here.
-    stream.finish()?;
-    Ok(file.finish()?)
+    stream.finish().map_err(error)?;
+    file.finish().map_err(error)
 }
 
 impl Colors for [u8; 4] {}
 impl sealed::Colors for [u8; 4] {
-    fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)> {
+    fn coded(image: &Image<Self>) -> io::Result<Coded<Self>> {
         Ok(if image.is_opaque() {
-            (image.pixels().iter().flat_map(|p| [p[0], p[1], p[2]]).collect(), ExtendedColorType::Rgb8)
+            Coded::bytes(ColorType::Rgb, |row: &[Self], out| out.extend(row.iter().flat_map(|p| [p[0], p[1], p[2]])))
         } else {
-            (image.pixels().as_flattened().to_vec(), ExtendedColorType::Rgba8)
+            Coded::bytes(ColorType::Rgba, |row, out| out.extend_from_slice(row.as_flattened()))
         })
     }
 }
 
 impl Colors for [u16; 4] {}
 impl sealed::Colors for [u16; 4] {
-    fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)> {
+    fn coded(image: &Image<Self>) -> io::Result<Coded<Self>> {
         Ok(if image.pixels().iter().all(|p| p[3] == u16::MAX) {
-            (bytes(image.pixels().iter().flat_map(|p| [p[0], p[1], p[2]])), ExtendedColorType::Rgb16)
+            Coded::words(ColorType::Rgb, |p: &Self| [p[0], p[1], p[2]])
         } else {
-            (bytes(image.pixels().as_flattened().iter().copied()), ExtendedColorType::Rgba16)
+            Coded::words(ColorType::Rgba, |p| *p)
         })
     }
 }
 
 impl Colors for u8 {}
 impl sealed::Colors for u8 {
-    fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)> {
-        Ok((image.pixels().to_vec(), ExtendedColorType::L8))
+    fn coded(_: &Image<Self>) -> io::Result<Coded<Self>> {
+        Ok(Coded::bytes(ColorType::Grayscale, |row, out| out.extend_from_slice(row)))
     }
 }
 
 impl Colors for u16 {}
 impl sealed::Colors for u16 {
-    fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)> {
-        Ok((bytes(image.pixels().iter().copied()), ExtendedColorType::L16))
+    fn coded(_: &Image<Self>) -> io::Result<Coded<Self>> {
+        Ok(Coded::words(ColorType::Grayscale, |grey| [*grey]))
     }
 }
 
 impl Colors for f64 {}
 impl sealed::Colors for f64 {
-    fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)> {
+    fn coded(image: &Image<Self>) -> io::Result<Coded<Self>> {
         let (low, high) = image.range().unwrap_or_default();
-        sealed::Colors::encode(&image.to_grey16(low, high))
+        Ok(Coded::words(ColorType::Grayscale, move |v| [grey(*v, low, high, f64::from(u16::MAX)) as u16]))
     }
 }
 
 impl Colors for bool {}
 impl sealed::Colors for bool {
-    fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)> {
-        sealed::Colors::encode(&image.map(|seen| if *seen { u8::MAX } else { 0 }))
+    fn coded(_: &Image<Self>) -> io::Result<Coded<Self>> {
+        let level = |seen: &bool| if *seen { u8::MAX } else { 0 };
+        Ok(Coded::bytes(ColorType::Grayscale, move |row, out| out.extend(row.iter().map(level))))
     }
 }
 
 impl Colors for Option<u32> {}
 impl sealed::Colors for Option<u32> {
-    fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)> {
+    fn coded(image: &Image<Self>) -> io::Result<Coded<Self>> {
         let most = image.pixels().iter().flatten().max();
         if let Some(most) = most.filter(|most| **most >= u32::from(u16::MAX)) {
             return Err(io::Error::other(format!("leaf {most} is beyond what 16 bits hold; allowed: up to 65534")));
         }
-        sealed::Colors::encode(&image.map(|owner| owner.map_or(0, |owner| owner as u16 + 1)))
+        Ok(Coded::words(ColorType::Grayscale, |owner: &Self| [owner.map_or(0, |owner| owner as u16 + 1)]))
     }
 }
 
 impl Colors for Vec3 {}
 impl sealed::Colors for Vec3 {
-    fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)> {
+    fn coded(image: &Image<Self>) -> io::Result<Coded<Self>> {
         if let Some(far) = image.pixels().iter().find(|n| !n.is_finite() || n.abs().max_element() > 1.0001) {
             return Err(io::Error::other(format!("a pixel is {far}; allowed in a PNG: −1 to 1")));
         }
         let level = |c: f32| ((0.5 + 0.5 * c).clamp(0.0, 1.0) * 65535.0).round() as u16;
-        Ok((bytes(image.pixels().iter().flat_map(|n| n.to_array().map(level))), ExtendedColorType::Rgb16))
+        Ok(Coded::words(ColorType::Rgb, move |n: &Self| n.to_array().map(level)))
     }
-}
-
-/// Numbers of 16 bits as the encoder takes them.
-fn bytes(numbers: impl Iterator<Item = u16>) -> Vec<u8> {
-    numbers.flat_map(u16::to_ne_bytes).collect()
 }
 
 #[cfg(test)]

@@ -10,18 +10,19 @@ use glam::{DVec3, Vec3};
 #[cfg(not(feature = "threemf"))]
 use super::absent::write_3mf;
 #[cfg(not(feature = "exr"))]
-use super::absent::write_exr;
+use super::absent::write_exr_on;
+use super::drawing::{write_dxf_on, write_svg_on};
+#[cfg(feature = "exr")]
+use super::exr::write_exr_on;
 use super::file::write_whole;
-use super::png::{Rows, write_png_rows};
+use super::gif::write_gif_on;
+use super::glb::write_glb_on;
+use super::obj::write_obj_on;
+use super::png::{Rows, write_png_on, write_png_rows};
 use super::watched::Watched;
 #[cfg(feature = "threemf")]
 use super::write_3mf;
-#[cfg(feature = "exr")]
-use super::write_exr;
-use super::{
-    LengthUnit, write_dxf, write_gif, write_glb, write_obj, write_ply, write_ply_points, write_png, write_stl,
-    write_stl_ascii, write_svg,
-};
+use super::{LengthUnit, write_ply, write_ply_points, write_stl, write_stl_ascii};
 use crate::geom::{Image, Mesh, PointCloud, Polyline};
 use crate::{Cancelled, Run};
 
@@ -99,14 +100,17 @@ pub struct SaveSettings {
 /// A writer of one format, for `T` by settings `S`.
 type Writer<T, S> = fn(&T, &S, &mut Watched<'_, &mut BufWriter<File>>) -> io::Result<()>;
 
+/// Pictures, and how long each is shown.
+type Animation<'a> = (&'a [Image], Duration);
+
 /// Bytes of a file to a vertex, a point or a triangle, about.
 const BYTES: u64 = 30;
 
 /// The formats of a mesh, by extension.
 const MESH_FORMATS: [(&str, Writer<Mesh, SaveSettings>); 5] = [
     ("3mf", |mesh, settings, out| write_3mf(mesh, settings, out)),
-    ("glb", |mesh, settings, out| write_glb(mesh, settings, out)),
-    ("obj", |mesh, settings, out| write_obj(mesh, settings, out)),
+    ("glb", |mesh, settings, out| write_glb_on(mesh, settings, out.run(), out)),
+    ("obj", |mesh, settings, out| write_obj_on(mesh, settings, out.run(), out)),
     ("ply", |mesh, _, out| write_ply(mesh, out)),
     ("stl", |mesh, settings, out| if settings.ascii { write_stl_ascii(mesh, out) } else { write_stl(mesh, out) }),
 ];
@@ -187,22 +191,22 @@ macro_rules! pixel {
         impl Pixel for $pixel {}
         impl sealed::Pixel for $pixel {
             const FORMATS: &'static [(&'static str, Writer<Image<Self>, ()>)] =
-                &[$(($extension, |image, (), out| $write(image, out))),*];
+                &[$(($extension, |image, (), out| $write(image, out.run(), out))),*];
         }
     )*};
 }
 
 pixel! {
-    [u8; 4]: "png" => write_png;
-    [u16; 4]: "png" => write_png;
-    u8: "png" => write_png;
-    u16: "png" => write_png;
-    bool: "png" => write_png;
-    Option<u32>: "png" => write_png;
-    [f32; 4]: "exr" => write_exr;
-    f64: "exr" => write_exr, "png" => write_png;
-    Vec3: "exr" => write_exr, "png" => write_png;
-    DVec3: "exr" => write_exr;
+    [u8; 4]: "png" => write_png_on;
+    [u16; 4]: "png" => write_png_on;
+    u8: "png" => write_png_on;
+    u16: "png" => write_png_on;
+    bool: "png" => write_png_on;
+    Option<u32>: "png" => write_png_on;
+    [f32; 4]: "exr" => write_exr_on;
+    f64: "exr" => write_exr_on, "png" => write_png_on;
+    Vec3: "exr" => write_exr_on, "png" => write_png_on;
+    DVec3: "exr" => write_exr_on;
 }
 
 impl<P: Pixel> Image<P> {
@@ -216,7 +220,30 @@ impl<P: Pixel> Image<P> {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        save(self, &(), path.as_ref(), P::FORMATS, 0, &Run::default())
+        self.save_on(path, &Run::default())
+    }
+
+    /// [`save`](Image::save) on a [`Run`], which is told how much is written, and may be
+    /// cancelled: then whatever was at the path before is still there.
+    ///
+    /// ```
+    /// use rvachev::error::SaveError;
+    /// use rvachev::{Image, Run};
+    ///
+    /// let picture = Image::new(2, 1, vec![[200_u8, 100, 50, 255]; 2])?;
+    /// let path = std::env::temp_dir().join("rvachev_picture_save_on.png");
+    /// let run = Run::default();
+    /// run.cancel.cancel();
+    /// let stopped = picture.save_on(&path, &run);
+    /// assert!(matches!(stopped, Err(SaveError::Cancelled(_))) && !path.exists());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause, or that the work was cancelled.
+    pub fn save_on(&self, path: impl AsRef<Path>, run: &Run) -> Result<(), SaveError> {
+        save(self, &(), path.as_ref(), P::FORMATS, 0, run)
     }
 }
 
@@ -229,14 +256,36 @@ impl Image {
     ///
     /// [`SaveError`], naming the file and the cause; that there are no pictures is one.
     pub fn save_animation(pictures: &[Image], pause: Duration, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        save(
-            &(pictures, pause),
-            &(),
-            path.as_ref(),
-            &[("gif", |(pictures, pause), (), out| write_gif(pictures, *pause, out))],
-            0,
-            &Run::default(),
-        )
+        Image::save_animation_on(pictures, pause, path, &Run::default())
+    }
+
+    /// [`save_animation`](Image::save_animation) on a [`Run`], which is told how many pictures are
+    /// written, and may be cancelled before each: then whatever was at the path before is still
+    /// there.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    /// use rvachev::{Image, Progress, Run};
+    ///
+    /// let pictures = [0, 90, 180].map(|grey| Image::new(1, 1, vec![[grey, grey, grey, 255]]).unwrap());
+    /// let progress = Some(Progress::new(|part| println!("{:.0} %", 100.0 * part)));
+    /// let path = std::env::temp_dir().join("rvachev_save_animation_on.gif");
+    /// Image::save_animation_on(&pictures, Duration::from_millis(40), &path, &Run { progress, ..Run::default() })?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause, or that the work was cancelled.
+    pub fn save_animation_on(
+        pictures: &[Image],
+        pause: Duration,
+        path: impl AsRef<Path>,
+        run: &Run,
+    ) -> Result<(), SaveError> {
+        let formats: &[(&str, Writer<Animation<'_>, ()>)] =
+            &[("gif", |(pictures, pause), (), out| write_gif_on(pictures, *pause, out.run(), out))];
+        save(&(pictures, pause), &(), path.as_ref(), formats, 0, run)
     }
 }
 
@@ -274,20 +323,39 @@ impl Polyline {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save_all(lines: &[Polyline], path: impl AsRef<Path>) -> Result<(), SaveError> {
-        save(
-            &lines,
-            &(),
-            path.as_ref(),
-            &[("dxf", |lines, (), out| write_dxf(lines, out)), ("svg", |lines, (), out| write_svg(lines, out))],
-            0,
-            &Run::default(),
-        )
+        Polyline::save_all_on(lines, path, &Run::default())
+    }
+
+    /// [`save_all`](Polyline::save_all) on a [`Run`], which is told how much is written, and may be
+    /// cancelled: then whatever was at the path before is still there.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use rvachev::error::SaveError;
+    /// use rvachev::{Polyline, Run};
+    ///
+    /// let triangle = Polyline::closed(vec![DVec2::ZERO, DVec2::X, DVec2::Y]);
+    /// let path = std::env::temp_dir().join("rvachev_save_all_on.svg");
+    /// let run = Run::default();
+    /// run.cancel.cancel();
+    /// let stopped = Polyline::save_all_on(&[triangle], &path, &run);
+    /// assert!(matches!(stopped, Err(SaveError::Cancelled(_))) && !path.exists());
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause, or that the work was cancelled.
+    pub fn save_all_on(lines: &[Polyline], path: impl AsRef<Path>, run: &Run) -> Result<(), SaveError> {
+        let formats: &[(&str, Writer<&[Polyline], ()>)] = &[
+            ("dxf", |lines, (), out| write_dxf_on(lines, out.run(), out)),
+            ("svg", |lines, (), out| write_svg_on(lines, out.run(), out)),
+        ];
+        save(&lines, &(), path.as_ref(), formats, 0, run)
     }
 }
 
 /// Saves `data` with the writer that `formats` has for the extension, in upper or lower case: so
-/// many
-/// `bytes`, about.
+/// many `bytes`, about; 0 if the writer itself tells how far it is.
 fn save<T, S>(
     data: &T,
     settings: &S,

@@ -1,6 +1,6 @@
 //! Readers and writers under a run.
 
-use std::io::{self, Read, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use crate::Run;
 
@@ -17,6 +17,11 @@ pub struct Watched<'a, T> {
 impl<'a, T> Watched<'a, T> {
     pub(super) fn new(inner: T, all: u64, run: &'a Run) -> Watched<'a, T> {
         Watched { inner, run, passed: 0, all }
+    }
+
+    /// The run.
+    pub(super) fn run(&self) -> &'a Run {
+        self.run
     }
 
     /// Lets some bytes pass.
@@ -44,5 +49,11 @@ impl<T: Write> Write for Watched<'_, T> {
 
     fn flush(&mut self) -> io::Result<()> {
         self.inner.flush()
+    }
+}
+
+impl<T: Seek> Seek for Watched<'_, T> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.inner.seek(to)
     }
 }

@@ -4,13 +4,11 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::Vec3;
+use rvachev_num::Meter;
 
 use super::groups::Groups;
 use crate::geom::{Findings, Mesh};
 use crate::{Bounds, Cancelled, Run};
-
-/// Triangles that are looked at before it is asked whether to go on.
-const AT_ONCE: usize = 1 << 16;
 
 /// A part of a mesh: triangles that hang together by shared vertices, and none besides.
 ///
@@ -55,7 +53,29 @@ impl Component {
     /// whole.
     #[must_use]
     pub fn mesh(&self) -> Mesh {
-        self.mesh.only(&self.triangles)
+        // A run that nobody else holds is not cancelled.
+        self.mesh_with(&Run::default()).unwrap_or_else(|Cancelled| Mesh::default())
+    }
+
+    /// [`mesh`](Component::mesh) with a cancel token and a progress sink; on one thread.
+    ///
+    /// ```
+    /// use rvachev::{MeshSettings, Progress, Run, Solid};
+    ///
+    /// let mesh = Solid::sphere(1.0).mesh(&MeshSettings::default())?;
+    /// let progress = Some(Progress::new(|part| println!("{:.0} %", 100.0 * part)));
+    /// let run = Run { progress, ..Run::default() };
+    /// assert_eq!(mesh.components_with(&run)?[0].mesh_with(&run)?.triangles().len(), mesh.triangles().len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the token was.
+    pub fn mesh_with(&self, run: &Run) -> Result<Mesh, Cancelled> {
+        let run = run.stage(0.0, 1.0);
+        let mesh = self.mesh.only(&self.triangles, &run.stage(0.0, 0.9))?;
+        run.report(1.0);
+        Ok(mesh)
     }
 }
 
@@ -91,22 +111,18 @@ impl Mesh {
     /// [`Cancelled`] if the token was.
     pub fn components_with(&self, run: &Run) -> Result<Vec<Component>, Cancelled> {
         let run = run.stage(0.0, 1.0);
+        let meter = Meter::new(&run, 3 * self.triangles().len());
         let mut groups = Groups::new(self.positions().len());
-        for triangles in self.triangles().chunks(AT_ONCE) {
-            run.check()?;
-            triangles.iter().for_each(|&[a, b, c]| {
-                groups.join(a, b);
-                groups.join(b, c);
-            });
+        for &[a, b, c] in self.triangles() {
+            meter.step()?;
+            groups.join(a, b);
+            groups.join(b, c);
         }
-        run.report(0.5);
         // The part that the vertices of a root are of.
         let mut parts = vec![u32::MAX; self.positions().len()];
         let mut lists: Vec<Vec<u32>> = Vec::new();
         for (number, triangle) in (0u32..).zip(self.triangles()) {
-            if (number as usize).is_multiple_of(AT_ONCE) {
-                run.check()?;
-            }
+            meter.step()?;
             let part = &mut parts[groups.root(triangle[0]) as usize];
             if *part == u32::MAX {
                 *part = lists.len() as u32;
@@ -114,10 +130,9 @@ impl Mesh {
             }
             lists[*part as usize].push(number);
         }
-        run.report(0.7);
         let mesh = Arc::new(self.clone());
         let component = |triangles: Vec<u32>| {
-            run.check()?;
+            meter.check()?;
             let (mut area, mut volume, mut min, mut max) = (0.0, 0.0, Vec3::INFINITY, Vec3::NEG_INFINITY);
             // From a point of the part the volumes of far ones do not cancel.
             let origin = mesh.corners(mesh.triangles()[triangles[0] as usize])[0];
@@ -130,6 +145,7 @@ impl Mesh {
                     (min, max) = (min.min(p), max.max(p));
                 }
             }
+            meter.add(triangles.len() as u64);
             let bounds = Bounds::new(min.as_dvec3(), max.as_dvec3());
             Ok(Component { mesh: mesh.clone(), triangles, volume, area, bounds })
         };
@@ -169,21 +185,24 @@ impl Mesh {
     /// [`Cancelled`] if the token was.
     pub fn keep_components_with(&self, is_kept: impl Fn(&Component) -> bool, run: &Run) -> Result<Mesh, Cancelled> {
         let run = run.stage(0.0, 1.0);
-        let parts = self.components_with(&run.stage(0.0, 0.8))?;
+        let [finding, keeping, _] = run.stages([2.0, 7.0, 1.0]);
+        let parts = self.components_with(&finding)?;
         let mut kept: Vec<u32> =
             parts.iter().filter(|part| is_kept(part)).flat_map(|part| part.triangles.iter().copied()).collect();
         kept.sort_unstable();
-        let mesh = self.only(&kept);
+        let mesh = self.only(&kept, &keeping)?;
         run.report(1.0);
         Ok(mesh)
     }
 
     /// Some triangles alone, with their vertices and all that they carry.
-    fn only(&self, chosen: &[u32]) -> Mesh {
+    fn only(&self, chosen: &[u32], run: &Run) -> Result<Mesh, Cancelled> {
+        let meter = Meter::new(run, chosen.len());
         let mut numbers = HashMap::with_capacity(chosen.len());
         let mut vertices: Vec<usize> = Vec::new();
         let mut triangles = Vec::with_capacity(chosen.len());
         for number in chosen {
+            meter.step()?;
             triangles.push(self.triangles()[*number as usize].map(|vertex| {
                 *numbers.entry(vertex).or_insert_with(|| {
                     vertices.push(vertex as usize);
@@ -212,7 +231,7 @@ impl Mesh {
             }
         };
         // What is of a mesh is right for a part of it.
-        Mesh::new(positions, triangles).and_then(part).unwrap_or_default()
+        Ok(Mesh::new(positions, triangles).and_then(part).unwrap_or_default())
     }
 }
 

@@ -3,6 +3,7 @@
 use rvachev_field as field;
 
 use crate::geom::Mesh;
+use crate::{Cancelled, Run};
 
 /// How far from closed a mesh is: [`Mesh::open_edges`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,7 +41,29 @@ impl Mesh {
     /// ```
     #[must_use]
     pub fn open_edges(&self) -> OpenEdges {
-        let field::OpenEdges { edges, length } = field::OpenEdges::of(self.positions(), self.triangles());
-        OpenEdges { edges, length }
+        // A run that nobody else holds is not cancelled.
+        self.open_edges_with(&Run::default()).unwrap_or_else(|Cancelled| OpenEdges::default())
+    }
+
+    /// [`open_edges`](Mesh::open_edges) with a cancel token and a progress sink; on one thread.
+    ///
+    /// ```
+    /// use rvachev::{MeshSettings, Run, Solid};
+    ///
+    /// let mesh = Solid::sphere(1.0).mesh(&MeshSettings::default())?;
+    /// let run = Run::default();
+    /// assert!(mesh.open_edges_with(&run)?.is_closed());
+    /// run.cancel.cancel();
+    /// assert!(mesh.open_edges_with(&run).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the token was.
+    pub fn open_edges_with(&self, run: &Run) -> Result<OpenEdges, Cancelled> {
+        let run = run.stage(0.0, 1.0);
+        let found = field::OpenEdges::of(self.positions(), self.triangles(), &run)?;
+        run.report(1.0);
+        Ok(OpenEdges { edges: found.edges, length: found.length })
     }
 }

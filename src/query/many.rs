@@ -2,14 +2,13 @@
 //! are and may be cancelled.
 
 use glam::DVec3;
-use rayon::prelude::*;
-use rvachev_num::Meter;
 
 use super::inside::is_inside;
 use super::nearest::nearest;
 use super::prepare::PrepareError;
 use crate::distance::{compiled_with, surface_with};
 use crate::eval::{Compiled, Hit, Owner};
+use crate::geom::each;
 use crate::{Bounds, Cancelled, Interval, Run, Solid, SolidError};
 
 /// So many are asked by a thread before it tells how far it is.
@@ -221,17 +220,5 @@ pub(super) fn never_cancelled<T>(found: Result<T, PrepareError>) -> Result<T, So
 
 /// What is said of each, in their order.
 fn asked<T: Sync, R: Send>(of: &[T], run: &Run, ask: impl Fn(&T) -> R + Sync) -> Result<Vec<R>, Cancelled> {
-    let meter = Meter::new(run, of.len());
-    let chunk = |chunk: &[T]| {
-        let answer = |of: &T| {
-            // One answer may take milliseconds.
-            run.check()?;
-            Ok(ask(of))
-        };
-        let answers = chunk.iter().map(answer).collect::<Result<Vec<R>, Cancelled>>()?;
-        meter.add(chunk.len() as u64);
-        Ok(answers)
-    };
-    let all = of.par_chunks(CHUNK).map(chunk).collect::<Result<Vec<Vec<R>>, Cancelled>>()?;
-    Ok(all.into_iter().flatten().collect())
+    each(of.len(), CHUNK, run, |i| ask(&of[i]))
 }

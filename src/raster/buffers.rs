@@ -7,6 +7,8 @@ use super::error::RasterError;
 use super::layers::{Facing, LayerSource, Tile};
 use super::target::{NOTHING, REVERSED, Target};
 use super::view::RasterView;
+use crate::{Cancelled, Image, Run};
+use rvachev_num::Meter;
 
 /// What is seen at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,11 +89,27 @@ impl Buffers {
         number: u32,
         facing: Facing,
     ) -> Result<(), RasterError> {
+        self.draw_with(layers, number, facing, &Run::default())
+    }
+
+    /// [`draw`](Buffers::draw) with a choice of threads, a cancel token and a progress sink. What is
+    /// cancelled has drawn a part.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`draw`](Buffers::draw), and [`RasterError::Cancelled`].
+    pub fn draw_with<L: LayerSource + ?Sized>(
+        &mut self,
+        layers: &L,
+        number: u32,
+        facing: Facing,
+        run: &Run,
+    ) -> Result<(), RasterError> {
         if number >= REVERSED - 1 {
             let allowed = "numbers below 2147483647";
             return Err(RasterError::Setting { setting: "number", value: number.to_string(), allowed });
         }
-        self.pass(layers, |target, tile| target.draw(layers, number, Some(facing), tile))
+        self.pass(layers, run, |target, tile| target.draw(layers, number, Some(facing), tile))
     }
 
     /// Adds to the stencil, for each stored point, the number of front less that of back faces
@@ -101,7 +119,17 @@ impl Buffers {
     ///
     /// [`RasterError::Size`].
     pub fn classify<L: LayerSource + ?Sized>(&mut self, layers: &L) -> Result<(), RasterError> {
-        self.pass(layers, |target, tile| target.classify(layers, tile))
+        self.classify_with(layers, &Run::default())
+    }
+
+    /// [`classify`](Buffers::classify) with a choice of threads, a cancel token and a progress sink.
+    /// What is cancelled has counted in a part.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`classify`](Buffers::classify), and [`RasterError::Cancelled`].
+    pub fn classify_with<L: LayerSource + ?Sized>(&mut self, layers: &L, run: &Run) -> Result<(), RasterError> {
+        self.pass(layers, run, |target, tile| target.classify(layers, tile))
     }
 
     /// Clears the points whose stencil does not pass the test.
@@ -133,16 +161,25 @@ impl Buffers {
     fn pass<L: LayerSource + ?Sized>(
         &mut self,
         layers: &L,
+        run: &Run,
         pass: impl Fn(&mut Target, &Tile) + Sync,
     ) -> Result<(), RasterError> {
         self.view.fits(layers.size())?;
         let RasterView { width, height, .. } = self.view;
-        self.tiles.par_iter_mut().enumerate().for_each(|(number, target)| {
-            let tile = Tile::number(number as u32, width, height);
-            if layers.touches(&tile) {
-                pass(target, &tile);
-            }
-        });
+        let run = run.stage(0.0, 1.0);
+        let meter = Meter::new(&run, self.tiles.len());
+        let tiles = &mut self.tiles;
+        run.install(|| {
+            tiles.par_iter_mut().enumerate().try_for_each(|(number, target)| {
+                meter.check()?;
+                let tile = Tile::number(number as u32, width, height);
+                if layers.touches(&tile) {
+                    pass(target, &tile);
+                }
+                meter.add(1);
+                Ok::<_, Cancelled>(())
+            })
+        })?;
         Ok(())
     }
 
@@ -181,9 +218,21 @@ impl Buffers {
     /// All depths in length units, row by row from the top left; +∞ where nothing is.
     #[must_use]
     pub fn depths(&self) -> Vec<f64> {
+        // A run that nobody else holds is not cancelled.
+        self.depth_image(&Run::default()).map_or_else(|Cancelled| Vec::new(), |image| image.pixels().to_vec())
+    }
+
+    /// All [depths](Buffers::depths) as a picture.
+    pub(super) fn depth_image(&self, run: &Run) -> Result<Image<f64>, Cancelled> {
+        const SIDE: usize = Tile::SIDE as usize;
         let RasterView { width, height, .. } = self.view;
-        let at = |(x, y)| self.depth(x, y).unwrap_or(f64::INFINITY);
-        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(at).collect()
+        let [across, _] = Tile::grid(width, height);
+        Image::by_rows([width, height], f64::INFINITY, run, |y, row| {
+            let (band, line) = ((y / Tile::SIDE * across) as usize, (y % Tile::SIDE) as usize * SIDE);
+            for (part, target) in row.chunks_mut(SIDE).zip(&self.tiles[band..]) {
+                part.copy_from_slice(&target.depth[line..line + part.len()]);
+            }
+        })
     }
 
     fn place(&self, x: u32, y: u32) -> Option<(&Target, usize)> {

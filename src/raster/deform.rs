@@ -20,8 +20,12 @@
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::error::RasterError;
-use crate::{Angle, Mesh, ParamError};
+use crate::geom::each;
+use crate::{Angle, Mesh, ParamError, Run};
 use rvachev_field::{AnyWarp, Bend, Erase, Taper, Twist};
+
+/// Vertices and triangles that a thread takes at once.
+const CHUNK: usize = 4096;
 
 impl Mesh {
     /// The mesh moved by an affine map, with all that it carries. A map that mirrors turns the
@@ -44,12 +48,31 @@ impl Mesh {
     /// [`RasterError::Parameter`] for a map that flattens or is not finite;
     /// [`RasterError::Mesh`] if a vertex is moved out of single precision.
     pub fn affine(&self, map: DAffine3) -> Result<Mesh, RasterError> {
+        self.affine_with(map, &Run::default())
+    }
+
+    /// [`affine`](Mesh::affine) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// ```
+    /// use glam::{DAffine3, DVec3};
+    /// use rvachev::{MeshSettings, Run, Solid};
+    ///
+    /// let mesh = Solid::sphere(1.0).mesh(&MeshSettings::default())?;
+    /// let moved = mesh.affine_with(DAffine3::from_translation(DVec3::X), &Run { threads: 2, ..Run::default() })?;
+    /// assert!((moved.bounds().min.x - mesh.bounds().min.x - 1.0).abs() < 1e-5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Those of [`affine`](Mesh::affine), and [`RasterError::Cancelled`].
+    pub fn affine_with(&self, map: DAffine3, run: &Run) -> Result<Mesh, RasterError> {
         let determinant = map.matrix3.determinant();
         if !map.is_finite() || determinant == 0.0 {
             return Err(ParamError::new("determinant of the map", determinant, "finite, and not 0").into());
         }
         let turned = map.matrix3.inverse().transpose();
-        moved(self, determinant < 0.0, |p, n| (map.transform_point3(p), turned * n))
+        moved(self, determinant < 0.0, run, |p, n| (map.transform_point3(p), turned * n))
     }
 
     /// The mesh tapered along z, with the parameters of [`Solid::taper`](crate::Solid::taper).
@@ -69,8 +92,17 @@ impl Mesh {
     ///
     /// [`RasterError::Parameter`] for a parameter that a solid of this size would not take.
     pub fn taper(&self, kx: f64, ky: f64, height: f64) -> Result<Mesh, RasterError> {
+        self.taper_with(kx, ky, height, &Run::default())
+    }
+
+    /// [`taper`](Mesh::taper) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`taper`](Mesh::taper), and [`RasterError::Cancelled`].
+    pub fn taper_with(&self, kx: f64, ky: f64, height: f64, run: &Run) -> Result<Mesh, RasterError> {
         let half_height = 0.5 * height;
-        deformed(self, &*Taper { kx, ky, height }.erase(), |p, n| {
+        deformed(self, &*Taper { kx, ky, height }.erase(), run, |p, n| {
             let t = (p.z / half_height).clamp(-1.0, 1.0);
             let (sx, sy) = (1.0 + kx * t, 1.0 + ky * t);
             let across = DVec3::new(n.x / sx, n.y / sy, 0.0);
@@ -88,8 +120,17 @@ impl Mesh {
     ///
     /// [`RasterError::Parameter`].
     pub fn twist(&self, rate: impl Into<Angle>) -> Result<Mesh, RasterError> {
+        self.twist_with(rate, &Run::default())
+    }
+
+    /// [`twist`](Mesh::twist) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`twist`](Mesh::twist), and [`RasterError::Cancelled`].
+    pub fn twist_with(&self, rate: impl Into<Angle>, run: &Run) -> Result<Mesh, RasterError> {
         let rate = rate.into();
-        deformed(self, &*Twist { rate }.erase(), |p, n| {
+        deformed(self, &*Twist { rate }.erase(), run, |p, n| {
             let rate = rate.radians();
             let (sin, cos) = (rate * p.z).sin_cos();
             let turned = |v: DVec3| DVec3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, v.z);
@@ -103,11 +144,20 @@ impl Mesh {
     ///
     /// [`RasterError::Parameter`].
     pub fn bend(&self, curvature: f64, angle: impl Into<Angle>) -> Result<Mesh, RasterError> {
+        self.bend_with(curvature, angle, &Run::default())
+    }
+
+    /// [`bend`](Mesh::bend) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`bend`](Mesh::bend), and [`RasterError::Cancelled`].
+    pub fn bend_with(&self, curvature: f64, angle: impl Into<Angle>, run: &Run) -> Result<Mesh, RasterError> {
         let angle = angle.into();
         let k = curvature;
         let (sin_angle, cos_angle) = angle.sin_cos();
         let along = DVec3::new(cos_angle, sin_angle, 0.0);
-        deformed(self, &*Bend { curvature, angle }.erase(), |p, n| {
+        deformed(self, &*Bend { curvature, angle }.erase(), run, |p, n| {
             let r = p.dot(along);
             let left = 1.0 - k * r;
             let (sin, cos) = (k * p.z).sin_cos();
@@ -126,33 +176,63 @@ impl Mesh {
 fn deformed(
     mesh: &Mesh,
     warp: &dyn AnyWarp,
-    map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3),
+    run: &Run,
+    map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3) + Sync,
 ) -> Result<Mesh, RasterError> {
     if !mesh.positions().is_empty() {
         warp.check(&mesh.bounds())?;
     }
-    moved(mesh, false, map)
+    moved(mesh, false, run, map)
 }
 
 /// The mesh with its vertices and normals, of any length, moved by `map`; its triangles the other
 /// way round if that mirrors. All else that it carries stays with its corners and triangles.
-fn moved(mesh: &Mesh, mirrors: bool, map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3)) -> Result<Mesh, RasterError> {
-    let positions: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
+fn moved(
+    mesh: &Mesh,
+    mirrors: bool,
+    run: &Run,
+    map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3) + Sync,
+) -> Result<Mesh, RasterError> {
+    let run = run.stage(0.0, 1.0);
+    run.check()?;
+    let moved = run.install(|| moved_on(mesh, mirrors, &run, &map))?;
+    run.report(1.0);
+    Ok(moved)
+}
+
+fn moved_on(
+    mesh: &Mesh,
+    mirrors: bool,
+    run: &Run,
+    map: &(impl Fn(DVec3, DVec3) -> (DVec3, DVec3) + Sync),
+) -> Result<Mesh, RasterError> {
+    let (positions, triangles) = (mesh.positions(), mesh.triangles());
     let normal = |vertex: u32, n: Vec3| {
         // Of length 1 first: one that is next to nothing would be rounded away.
-        let n = map(positions[vertex as usize], n.as_dvec3()).1;
+        let n = map(positions[vertex as usize].as_dvec3(), n.as_dvec3()).1;
         (n / n.abs().max_element().max(f64::MIN_POSITIVE)).normalize_or_zero().as_vec3()
     };
-    let vertices = positions.iter().map(|&p| map(p, DVec3::ZERO).0.as_vec3()).collect();
-    let triangles = mesh.triangles();
+    // As many as there are numbers to find.
+    let has = |numbers: usize, is_there: bool| if is_there { numbers as f64 } else { 0.0 };
+    let counts = [
+        positions.len() as f64,
+        has(positions.len(), mesh.normals().is_some()),
+        has(3 * triangles.len(), mesh.corner_normals().is_some()),
+        // What is copied only.
+        0.5 * triangles.len() as f64 + 1.0,
+    ];
+    let [moving, turning, bending, _] = run.stages(counts);
+    let vertices = each(positions.len(), CHUNK, &moving, |v| map(positions[v].as_dvec3(), DVec3::ZERO).0.as_vec3())?;
     let mut moved = Mesh::new(vertices, turned_round(triangles, mirrors))?;
     if let Some(normals) = mesh.normals() {
-        moved = moved.with_normals((0u32..).zip(normals).map(|(vertex, &n)| normal(vertex, n)).collect())?;
+        moved = moved.with_normals(each(normals.len(), CHUNK, &turning, |v| normal(v as u32, normals[v]))?)?;
     }
     if let Some(normals) = mesh.corner_normals() {
-        let turned = triangles.iter().zip(normals).map(|(t, n)| std::array::from_fn(|k| normal(t[k], n[k])));
-        moved = moved.with_corner_normals(turned_round(&turned.collect::<Vec<_>>(), mirrors))?;
+        let turned = |t: usize| std::array::from_fn(|k| normal(triangles[t][k], normals[t][k]));
+        let turned: Vec<[Vec3; 3]> = each(normals.len(), CHUNK, &bending, turned)?;
+        moved = moved.with_corner_normals(turned_round(&turned, mirrors))?;
     }
+    run.check()?;
     if let Some(colors) = mesh.corner_colors() {
         moved = moved.with_corner_colors(turned_round(colors, mirrors))?;
     }

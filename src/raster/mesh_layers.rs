@@ -11,7 +11,8 @@ use super::layers::{Fragments, LayerSource, Tile};
 use super::target::Target;
 use super::triangle::{Batch, Triangle};
 use super::view::RasterView;
-use crate::Mesh;
+use crate::{Cancelled, Mesh, Run};
+use rvachev_num::Meter;
 
 /// Triangles that are prepared at once by a thread.
 const CHUNK: usize = 4096;
@@ -45,19 +46,72 @@ impl RasterView {
     /// Uses the rayon pool of the caller ([`Run::install`](crate::Run::install) chooses one).
     #[must_use]
     pub fn layers<'a>(&self, mesh: ClosedMesh<'a>) -> MeshLayers<'a> {
-        MeshLayers::new(mesh.mesh(), self, true)
+        MeshLayers::whole(mesh.mesh(), self, true)
+    }
+
+    /// [`layers`](RasterView::layers) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// ```
+    /// use rvachev::raster::{Buffers, ClosedMesh, Facing, RasterView};
+    /// use rvachev::{Camera, MeshSettings, Progress, Run, Solid};
+    ///
+    /// let mesh = Solid::sphere(1.0).mesh(&MeshSettings::default())?;
+    /// let view = RasterView::new(&Camera::framing(&mesh.bounds()), 80, 60)?;
+    /// // One run serves a job after the other; each tells from 0 on.
+    /// let progress = Some(Progress::new(|part| println!("{:.0} %", 100.0 * part)));
+    /// let run = Run { threads: 2, progress, ..Run::default() };
+    /// let layers = view.layers_with(ClosedMesh::new(&mesh)?, &run)?;
+    /// let mut buffers = Buffers::new(&view);
+    /// buffers.draw_with(&layers, 0, Facing::Front, &run)?;
+    /// assert_eq!(buffers.picture_with(&[&layers], &[[200; 3]], &run)?.pixel(0, 0), Some([0; 4]));
+    /// assert_eq!(buffers.depth_picture_with(&run)?, buffers.depth_picture()?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`].
+    pub fn layers_with<'a>(&self, mesh: ClosedMesh<'a>, run: &Run) -> Result<MeshLayers<'a>, Cancelled> {
+        run.install(|| MeshLayers::new(mesh.mesh(), self, true, run))
     }
 
     /// The layers of any mesh, also of an open one. They can be drawn
     /// ([`Buffers::draw`](super::Buffers::draw)), but not be joined with others.
     #[must_use]
     pub fn surface<'a>(&self, mesh: &'a Mesh) -> MeshLayers<'a> {
-        MeshLayers::new(mesh, self, false)
+        MeshLayers::whole(mesh, self, false)
+    }
+
+    /// [`surface`](RasterView::surface) with a choice of threads, a cancel token and a progress
+    /// sink.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`].
+    pub fn surface_with<'a>(&self, mesh: &'a Mesh, run: &Run) -> Result<MeshLayers<'a>, Cancelled> {
+        run.install(|| MeshLayers::new(mesh, self, false, run))
     }
 }
 
 impl<'a> MeshLayers<'a> {
-    fn new(mesh: &'a Mesh, view: &RasterView, is_closed: bool) -> MeshLayers<'a> {
+    /// The layers when nobody cancels.
+    fn whole(mesh: &'a Mesh, view: &RasterView, is_closed: bool) -> MeshLayers<'a> {
+        let none = MeshLayers {
+            mesh,
+            view: *view,
+            is_closed,
+            is_cut: false,
+            triangles: Vec::new(),
+            starts: Vec::new(),
+            bins: Vec::new(),
+        };
+        MeshLayers::new(mesh, view, is_closed, &Run::default()).unwrap_or(none)
+    }
+
+    fn new(mesh: &'a Mesh, view: &RasterView, is_closed: bool, run: &Run) -> Result<MeshLayers<'a>, Cancelled> {
+        let run = run.stage(0.0, 1.0);
+        run.check()?;
+        let [preparing, sorting] = run.stages([3.0, 1.0]);
         let corner = |p: &glam::Vec3| {
             let relative = view.relative(p.as_dvec3());
             let mut is_whole = true;
@@ -67,20 +121,23 @@ impl<'a> MeshLayers<'a> {
             Corner { drawn: if is_whole { Some(snapped(view, relative)) } else { None }, relative }
         };
         let corners: Vec<Corner> = mesh.positions().par_iter().with_min_len(CHUNK).map(corner).collect();
+        let meter = Meter::new(&preparing, mesh.triangles().len());
         let parts: Vec<(Vec<Triangle>, bool)> = mesh
             .triangles()
             .par_chunks(CHUNK)
             .enumerate()
             .map(|(chunk, triangles)| {
+                meter.check()?;
                 let mut part = (Vec::with_capacity(triangles.len()), false);
                 for (i, t) in triangles.iter().enumerate() {
                     let face = (chunk * CHUNK + i) as u32;
                     let [a, b, c] = [corners[t[0] as usize], corners[t[1] as usize], corners[t[2] as usize]];
                     part.1 |= prepare(view, [a, b, c], face, &mut part.0);
                 }
-                part
+                meter.add(triangles.len() as u64);
+                Ok(part)
             })
-            .collect();
+            .collect::<Result<_, Cancelled>>()?;
         let is_cut = parts.iter().any(|part| part.1);
         let mut triangles = Vec::with_capacity(parts.iter().map(|part| part.0.len()).sum());
         for mut part in parts {
@@ -88,16 +145,19 @@ impl<'a> MeshLayers<'a> {
         }
         let mut layers =
             MeshLayers { mesh, view: *view, is_closed, is_cut, triangles, starts: Vec::new(), bins: Vec::new() };
-        layers.sort_into_tiles();
-        layers
+        layers.sort_into_tiles(&sorting)?;
+        run.report(1.0);
+        Ok(layers)
     }
 
     /// A counting sort, which keeps the order.
-    fn sort_into_tiles(&mut self) {
+    fn sort_into_tiles(&mut self, run: &Run) -> Result<(), Cancelled> {
+        let meter = Meter::new(run, 2 * self.triangles.len());
         let [across, down] = Tile::grid(self.view.width, self.view.height);
         let fraction = self.view.fraction;
         let mut starts = vec![0u32; (across * down) as usize + 1];
         for triangle in &self.triangles {
+            meter.step()?;
             for_tiles(triangle, fraction, across, down, |tile| starts[tile as usize + 1] += 1);
         }
         for tile in 1..starts.len() {
@@ -106,6 +166,7 @@ impl<'a> MeshLayers<'a> {
         let mut free = starts.clone();
         let mut bins = vec![0; starts[starts.len() - 1] as usize];
         for (number, triangle) in self.triangles.iter().enumerate() {
+            meter.step()?;
             for_tiles(triangle, fraction, across, down, |tile| {
                 let slot = &mut free[tile as usize];
                 bins[*slot as usize] = number as u32;
@@ -113,6 +174,7 @@ impl<'a> MeshLayers<'a> {
             });
         }
         (self.starts, self.bins) = (starts, bins);
+        Ok(())
     }
 
     /// The mesh.

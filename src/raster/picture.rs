@@ -16,8 +16,9 @@ use super::buffers::Buffers;
 use super::error::RasterError;
 use super::layers::{Facing, LayerSource, Tile};
 use super::target::{NOTHING, Target};
-use crate::Image;
 use crate::geom::{to_byte, to_linear};
+use crate::{Image, Run};
+use rvachev_num::Meter;
 
 /// Strengths of the lights.
 const KEY: f64 = 0.95;
@@ -41,6 +42,20 @@ impl Buffers {
     /// [`RasterError::Operand`] if an operand is seen that is not given;
     /// [`RasterError::Setting`] without any colour.
     pub fn picture(&self, operands: &[&dyn LayerSource], colors: &[[u8; 3]]) -> Result<Image, RasterError> {
+        self.picture_with(operands, colors, &Run::default())
+    }
+
+    /// [`picture`](Buffers::picture) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`picture`](Buffers::picture), and [`RasterError::Cancelled`].
+    pub fn picture_with(
+        &self,
+        operands: &[&dyn LayerSource],
+        colors: &[[u8; 3]],
+        run: &Run,
+    ) -> Result<Image, RasterError> {
         if colors.is_empty() {
             let allowed = "one colour or more";
             return Err(RasterError::Setting { setting: "number of colors", value: "0".into(), allowed });
@@ -100,15 +115,20 @@ impl Buffers {
         let mut pixels = vec![[0; 4]; width as usize * height as usize];
         // A row of tiles at a time.
         let bands = pixels.par_chunks_mut((width * Tile::SIDE) as usize).zip(self.tiles.par_chunks(across as usize));
-        bands.enumerate().try_for_each(|(band, (pixels, tiles))| {
+        let run = run.stage(0.0, 1.0);
+        let meter = Meter::new(&run, height);
+        let band = |(band, (pixels, tiles)): (usize, (&mut [[u8; 4]], &[Target]))| {
             let top = band as u32 * Tile::SIDE;
             for ((line, pixels), y) in pixels.chunks_mut(width as usize).enumerate().zip(top..) {
+                meter.check()?;
                 for (target, (part, left)) in tiles.iter().zip(pixels.chunks_mut(SIDE).zip((0..).step_by(SIDE))) {
                     row(target, line * SIDE, left, y, part)?;
                 }
+                meter.add(1);
             }
             Ok::<_, RasterError>(())
-        })?;
+        };
+        run.install(|| bands.enumerate().try_for_each(band))?;
         Ok(Image::new(width, height, pixels)?)
     }
 
@@ -119,9 +139,20 @@ impl Buffers {
     ///
     /// None but an internal one.
     pub fn depth_picture(&self) -> Result<Image, RasterError> {
-        let depths = self.depths();
-        let seen = || depths.iter().copied().filter(|d| d.is_finite());
-        let (near, far) = seen().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
+        self.depth_picture_with(&Run::default())
+    }
+
+    /// [`depth_picture`](Buffers::depth_picture) with a choice of threads, a cancel token and a
+    /// progress sink.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`depth_picture`](Buffers::depth_picture), and [`RasterError::Cancelled`].
+    pub fn depth_picture_with(&self, run: &Run) -> Result<Image, RasterError> {
+        let run = run.stage(0.0, 1.0);
+        let [gathering, shading] = run.stages([1.0, 1.0]);
+        let depths = self.depth_image(&gathering)?;
+        let (near, far) = depths.range().unwrap_or_default();
         let range = (far - near).max(f64::MIN_POSITIVE);
         let grey = |depth: &f64| {
             if !depth.is_finite() {
@@ -131,7 +162,6 @@ impl Buffers {
             let level = level.round() as u8;
             [level, level, level, 255]
         };
-        let view = self.view();
-        Ok(Image::new(view.width(), view.height(), depths.iter().map(grey).collect())?)
+        Ok(depths.map_on([0; 4], &shading, grey)?)
     }
 }

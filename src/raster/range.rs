@@ -2,7 +2,7 @@
 
 use super::buffers::Buffers;
 use super::error::RasterError;
-use crate::{Image, RangeImage};
+use crate::{RangeImage, Run};
 
 impl Buffers {
     /// The depth buffer as a range image, of the same kind as those that rays make: depths along
@@ -32,9 +32,19 @@ impl Buffers {
     ///
     /// [`RasterError::Range`] for a camera whose numbers are too extreme for intrinsics.
     pub fn range_image(&self) -> Result<RangeImage, RasterError> {
+        self.range_image_with(&Run::default())
+    }
+
+    /// [`range_image`](Buffers::range_image) with a choice of threads, a cancel token and a
+    /// progress sink.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`range_image`](Buffers::range_image), and [`RasterError::Cancelled`].
+    pub fn range_image_with(&self, run: &Run) -> Result<RangeImage, RasterError> {
         let view = self.view();
         let (width, height) = (view.width(), view.height());
-        let depth = Image::new(width, height, self.depths())?;
+        let depth = self.depth_image(&run.stage(0.0, 1.0))?;
         let camera = view.camera();
         Ok(RangeImage::new(depth, camera.intrinsics(width, height), camera.pose())?)
     }

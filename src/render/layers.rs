@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use super::gbuffer::{GBuffer, Surface, Window};
 use super::scene::Scene;
 use super::settings::{RenderError, check_memory, check_size};
-use crate::{Camera, Image, RangeImage, Rays, Run, Solid, View};
+use crate::{Camera, Cancelled, Image, RangeImage, Rays, Run, Solid, View};
 
 /// What the pixels of a picture see, through their middles.
 ///
@@ -78,77 +78,105 @@ impl Layers {
     }
 
     /// An image of what `f` makes of each pixel: its ray and what it meets.
-    fn image<P>(&self, mut f: impl FnMut(DVec3, DVec3, &Surface) -> P) -> Image<P> {
+    fn image<P: Copy + Send + Sync>(&self, blank: P, f: impl Fn(DVec3, DVec3, &Surface) -> P + Sync) -> Image<P> {
+        self.image_on(blank, &Run::default(), f).unwrap_or_else(|Cancelled| unreachable!("nobody has the token"))
+    }
+
+    fn image_on<P: Copy + Send + Sync>(
+        &self,
+        blank: P,
+        run: &Run,
+        f: impl Fn(DVec3, DVec3, &Surface) -> P + Sync,
+    ) -> Result<Image<P>, Cancelled> {
         let Window { width, height, .. } = self.seen.window();
-        let mut pixels = Vec::with_capacity(self.seen.surfaces().len());
-        for (row, y) in self.seen.surfaces().chunks(width as usize).zip(0..height) {
-            for (surface, x) in row.iter().zip(0..width) {
+        Image::by_rows([width, height], blank, run, |y, row| {
+            let seen = &self.seen.surfaces()[y as usize * width as usize..];
+            for ((to, surface), x) in row.iter_mut().zip(seen).zip(0..) {
                 let (origin, direction) = self.rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
-                pixels.push(f(origin, direction, surface));
+                *to = f(origin, direction, surface);
             }
-        }
-        match Image::new(width, height, pixels) {
-            Ok(image) => image,
-            Err(_) => unreachable!("a pixel for each, and sizes have been checked"),
-        }
+        })
     }
 
     /// Depth along the axis of the view, in length units, as depth cameras give it; infinite
     /// where there is nothing.
     #[must_use]
     pub fn depth(&self) -> Image<f64> {
+        self.depth_on(&Run::default()).unwrap_or_else(|Cancelled| unreachable!("nobody has the token"))
+    }
+
+    fn depth_on(&self, run: &Run) -> Result<Image<f64>, Cancelled> {
         let forward = self.rays.forward();
-        self.image(
-            |_, direction, surface| {
-                if surface.is_hit() { surface.distance * direction.dot(forward) } else { f64::INFINITY }
-            },
-        )
+        self.image_on(f64::INFINITY, run, |_, direction, surface| {
+            if surface.is_hit() { surface.distance * direction.dot(forward) } else { f64::INFINITY }
+        })
     }
 
     /// Depth along each pixel's ray, in length units, as laser scanners give it; infinite where
     /// there is nothing.
     #[must_use]
     pub fn depth_along_rays(&self) -> Image<f64> {
-        self.image(|_, _, surface| surface.distance)
+        self.image(f64::INFINITY, |_, _, surface| surface.distance)
     }
 
     /// Unit normals out of the solid, in world coordinates; 0 where there is nothing.
     #[must_use]
     pub fn normal(&self) -> Image<Vec3> {
-        self.image(|_, _, surface| surface.normal)
+        self.image(Vec3::ZERO, |_, _, surface| surface.normal)
     }
 
     /// Points of the surface in world coordinates; infinite where there is nothing.
     #[must_use]
     pub fn position(&self) -> Image<DVec3> {
-        self.image(
-            |origin, direction, surface| {
-                if surface.is_hit() { origin + surface.distance * direction } else { DVec3::INFINITY }
-            },
-        )
+        self.image(DVec3::INFINITY, |origin, direction, surface| {
+            if surface.is_hit() { origin + surface.distance * direction } else { DVec3::INFINITY }
+        })
     }
 
     /// Whether there is something.
     #[must_use]
     pub fn mask(&self) -> Image<bool> {
-        self.image(|_, _, surface| surface.is_hit())
+        self.image(false, |_, _, surface| surface.is_hit())
     }
 
     /// The number of the leaf that is seen, as [`Owner::index`](crate::Owner::index) but for the
     /// owners of imported meshes; `None` where there is nothing.
     #[must_use]
     pub fn owner(&self) -> Image<Option<u32>> {
-        self.image(|_, _, surface| surface.is_hit().then_some(surface.owner))
+        self.image(None, |_, _, surface| surface.is_hit().then_some(surface.owner))
     }
 
     /// The depth image with the camera's geometry, to be turned into points, with noise if
     /// wanted.
     #[must_use]
     pub fn range_image(&self) -> RangeImage {
-        let Window { width, height, .. } = self.seen.window();
-        let intrinsics = self.camera.intrinsics(width, height);
-        match RangeImage::new(self.depth(), intrinsics, self.camera.pose()) {
-            Ok(range) => range.with_normals(self.normal()),
+        self.range_image_with(&Run::default()).unwrap_or_else(|Cancelled| unreachable!("nobody has the token"))
+    }
+
+    /// [`range_image`](Layers::range_image) with a choice of threads, a cancel token and a progress
+    /// sink.
+    ///
+    /// ```
+    /// use rvachev::{Camera, Run, Solid};
+    ///
+    /// let ball = Solid::sphere(1.0);
+    /// let layers = ball.layers(&Camera::framing(&ball.bounds()?), 64, 48)?;
+    /// let range = layers.range_image_with(&Run { threads: 1, ..Run::default() })?;
+    /// assert_eq!(range, layers.range_image());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`].
+    pub fn range_image_with(&self, run: &Run) -> Result<RangeImage, Cancelled> {
+        let run = run.stage(0.0, 1.0);
+        let [to_depths, to_normals] = run.stages([1.0, 1.0]);
+        let depth = self.depth_on(&to_depths)?;
+        let normals = self.image_on(Vec3::ZERO, &to_normals, |_, _, surface| surface.normal)?;
+        let intrinsics = self.camera.intrinsics(depth.width(), depth.height());
+        match RangeImage::new(depth, intrinsics, self.camera.pose()) {
+            Ok(range) => Ok(range.with_normals(normals)),
             Err(_) => unreachable!("the camera has been checked"),
         }
     }

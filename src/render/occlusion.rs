@@ -225,7 +225,7 @@ impl<'a> Obstacles<'a> {
         let lit = |spot: &Spot| self.share(spot) > 0.0 && self.key.dot(spot.normal.as_dvec3()) > 0.0;
         let asked: Vec<usize> = (0..spots.len()).filter(|&i| lit(&spots[i])).collect();
         let rays: Vec<(DVec3, DVec3)> = asked.iter().map(|&i| (self.start(&spots[i]), self.key)).collect();
-        for (&i, hit) in asked.iter().zip(self.scene.first_hits_with(&rays, run)?) {
+        for (&i, hit) in asked.iter().zip(self.scene.hits(&rays, run)?) {
             if hit.is_hit() {
                 seen[i].key = 1.0 - self.share(&spots[i]);
             }

@@ -306,7 +306,7 @@ impl Picture<'_> {
             .collect();
         let hits = match &self.draft {
             Some(draft) => draft.samples(&numbers, band.top, n, pixels.len()),
-            None => self.scene.first_hits_with(&rays, run)?,
+            None => self.scene.hits(&rays, run)?,
         };
         let spots = rays.par_iter().zip(&hits).map(|(ray, hit)| Spot::new(ray.0, ray.1, hit, self.ground)).collect();
         Ok(Fine { numbers, spots })

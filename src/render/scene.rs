@@ -210,11 +210,33 @@ impl Scene {
     #[must_use]
     pub fn first_hits(&self, rays: &[(DVec3, DVec3)]) -> Vec<Surface> {
         // A run that nobody else holds is not cancelled.
-        self.first_hits_with(rays, &Run::default()).unwrap_or_else(|Cancelled| vec![Surface::NONE; rays.len()])
+        self.hits(rays, &Run::default()).unwrap_or_else(|Cancelled| vec![Surface::NONE; rays.len()])
     }
 
-    /// The same with a cancel token and a progress sink.
-    pub(super) fn first_hits_with(&self, rays: &[(DVec3, DVec3)], run: &Run) -> Result<Vec<Surface>, Cancelled> {
+    /// [`first_hits`](Scene::first_hits) with a choice of threads, a cancel token and a progress
+    /// sink.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use rvachev::{Run, Solid};
+    ///
+    /// let scene = Solid::sphere(1.0).scene()?;
+    /// let rays = [(DVec3::X * 3.0, -DVec3::X), (DVec3::X * 3.0, DVec3::X)];
+    /// let found = scene.first_hits_with(&rays, &Run { threads: 1, ..Run::default() })?;
+    /// assert!((found[0].distance - 2.0).abs() < 1e-5 && !found[1].is_hit());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// That the work was cancelled.
+    pub fn first_hits_with(&self, rays: &[(DVec3, DVec3)], run: &Run) -> Result<Vec<Surface>, Cancelled> {
+        let run = run.stage(0.0, 1.0);
+        run.check()?;
+        run.install(|| self.hits(rays, &run))
+    }
+
+    /// The same as a part of a job, on its threads.
+    pub(super) fn hits(&self, rays: &[(DVec3, DVec3)], run: &Run) -> Result<Vec<Surface>, Cancelled> {
         let mut found = vec![Surface::NONE; rays.len()];
         if let Some(cells) = &self.cells {
             let meter = Meter::new(run, rays.len());

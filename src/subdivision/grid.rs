@@ -6,6 +6,8 @@ use super::refine::{refine, refined_len, stencil};
 use super::{MOST_IN_MESH, SubdivisionError, Tension, check_coordinates, check_levels};
 use crate::geom::QuadMesh;
 use crate::surface::stitch::{End, Knot, Knots, Layout, stitch};
+use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// A grid of control points, rows × columns, open or closed each way.
 ///
@@ -83,7 +85,21 @@ impl ControlGrid {
     /// # Errors
     /// [`SubdivisionError::Levels`] for more than 2²⁴ points.
     pub fn subdivided(&self, levels: u32) -> Result<ControlGrid, SubdivisionError> {
+        self.subdivided_with(levels, &Run::default())
+    }
+
+    /// [`subdivided`](ControlGrid::subdivided) with a cancel token and a progress sink; on one
+    /// thread.
+    ///
+    /// # Errors
+    /// Those of [`subdivided`](ControlGrid::subdivided), and [`SubdivisionError::Cancelled`].
+    pub fn subdivided_with(&self, levels: u32, run: &Run) -> Result<ControlGrid, SubdivisionError> {
         check_levels(self.points.len(), levels, 2, MOST_IN_MESH)?;
+        let run = run.stage(0.0, 1.0);
+        let longer = |count: [usize; 2]| [0, 1].map(|k| refined_len(count[k], self.closed[k]));
+        let sizes = std::iter::successors(Some(self.size()), |size| Some(longer(*size)));
+        let passes = sizes.take(levels as usize).map(|size| pass_points(size, longer(size)));
+        let meter = Meter::new(&run, passes.sum::<usize>());
         let mut grid = self.clone();
         for level in 1..=levels {
             let masks = self.tension.map(|tension| tension.mask(level));
@@ -95,8 +111,9 @@ impl ControlGrid {
                     refine(to, row.len(), closed, mask);
                 }
             };
-            grid = grid.along_rows(level(masks[1])).transposed().along_rows(level(masks[0])).transposed();
+            grid = grid.both_ways(level(masks[0]), level(masks[1]), &meter)?;
         }
+        run.report(1.0);
         Ok(ControlGrid { tension: self.tension.map(|tension| tension.at_level(levels)), ..grid })
     }
 
@@ -105,7 +122,8 @@ impl ControlGrid {
     pub fn control_cage(&self) -> QuadMesh {
         let mut mesh = QuadMesh::default();
         let sheet = Sheet { grid: self, along: None };
-        stitch(&sheet, sheet.layout(), &mut mesh);
+        // Nobody cancels it.
+        let _ = stitch(&sheet, sheet.layout(), &mut mesh, &Run::default());
         QuadMesh { normals: vec![], quad_corners: vec![], triangle_corners: vec![], ..mesh }
     }
 
@@ -115,7 +133,31 @@ impl ControlGrid {
     /// # Errors
     /// [`SubdivisionError::Levels`] for more than 2²⁴ points.
     pub fn limit_mesh(&self, levels: u32) -> Result<QuadMesh, SubdivisionError> {
-        let grid = self.subdivided(levels)?;
+        self.limit_mesh_with(levels, &Run::default())
+    }
+
+    /// [`limit_mesh`](ControlGrid::limit_mesh) with a cancel token and a progress sink; on one
+    /// thread.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use rvachev::subdivision::{ControlGrid, SubdivisionError, Tension};
+    /// use rvachev::Run;
+    ///
+    /// let points: Vec<DVec3> = (0..16).map(|i| [i % 4, i / 4, i % 3].map(f64::from).into()).collect();
+    /// let sheet = ControlGrid::new(&points, [4, 4], [false; 2], [Tension::CUBIC; 2])?;
+    /// let run = Run::default();
+    /// run.cancel.cancel();
+    /// assert!(matches!(sheet.limit_mesh_with(8, &run), Err(SubdivisionError::Cancelled(_))));
+    /// # Ok::<(), SubdivisionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`limit_mesh`](ControlGrid::limit_mesh), and [`SubdivisionError::Cancelled`].
+    pub fn limit_mesh_with(&self, levels: u32, run: &Run) -> Result<QuadMesh, SubdivisionError> {
+        let run = run.stage(0.0, 1.0);
+        let [refining, smoothing, stitching] = run.stages([3.0, 2.0, 5.0]);
+        let grid = self.subdivided_with(levels, &refining)?;
         let point = grid.tension.map(|tension| {
             let [neighbour, own] = tension.limit_weights(0);
             [neighbour, own, neighbour]
@@ -124,43 +166,77 @@ impl ControlGrid {
             let weight = tension.tangent_weight(0);
             [-weight, 0.0, weight]
         });
-        let limit = grid.stencilled(point[0], point[1]);
-        let along = [grid.stencilled(slope[0], point[1]), grid.stencilled(point[0], slope[1])];
+        let made = [0, 1].map(|k| grid.size()[k] - if grid.closed[k] { 0 } else { 2 });
+        let meter = Meter::new(&smoothing, 3 * pass_points(grid.size(), made));
+        let limit = grid.stencilled(point[0], point[1], &meter)?;
+        let along = [grid.stencilled(slope[0], point[1], &meter)?, grid.stencilled(point[0], slope[1], &meter)?];
         let mut mesh = QuadMesh::default();
         let sheet = Sheet { grid: &limit, along: Some(along) };
-        stitch(&sheet, sheet.layout(), &mut mesh);
+        stitch(&sheet, sheet.layout(), &mut mesh, &stitching)?;
+        run.report(1.0);
         Ok(mesh)
     }
 
-    fn stencilled(&self, row_to_row: [f64; 3], column_to_column: [f64; 3]) -> ControlGrid {
+    fn stencilled(
+        &self,
+        row_to_row: [f64; 3],
+        column_to_column: [f64; 3],
+        meter: &Meter<'_>,
+    ) -> Result<ControlGrid, Cancelled> {
         let apply = |weights: [f64; 3]| {
             move |row: &[[f64; 3]], closed: bool, to: &mut Vec<[f64; 3]>| *to = stencil(row, closed, weights)
         };
-        self.along_rows(apply(column_to_column)).transposed().along_rows(apply(row_to_row)).transposed()
+        self.both_ways(apply(row_to_row), apply(column_to_column), meter)
     }
 
-    /// The grid with each row made anew.
-    fn along_rows(&self, make: impl Fn(&[[f64; 3]], bool, &mut Vec<[f64; 3]>)) -> ControlGrid {
+    /// The grid with each row made anew by the second rule, then each column by the first. Counts
+    /// [`pass_points`].
+    fn both_ways(
+        &self,
+        row_to_row: impl Fn(&[[f64; 3]], bool, &mut Vec<[f64; 3]>),
+        column_to_column: impl Fn(&[[f64; 3]], bool, &mut Vec<[f64; 3]>),
+        meter: &Meter<'_>,
+    ) -> Result<ControlGrid, Cancelled> {
+        self.along_rows(column_to_column, meter)?.along_rows(row_to_row, meter)
+    }
+
+    /// The grid with each row made anew, transposed.
+    fn along_rows(
+        &self,
+        make: impl Fn(&[[f64; 3]], bool, &mut Vec<[f64; 3]>),
+        meter: &Meter<'_>,
+    ) -> Result<ControlGrid, Cancelled> {
         let mut points = Vec::new();
         let mut made = Vec::new();
         for row in self.points.chunks_exact(self.columns) {
+            meter.check()?;
             make(row, self.closed[1], &mut made);
             points.extend_from_slice(&made);
+            meter.add(made.len() as u64);
         }
-        ControlGrid { columns: points.len() / self.rows, points, ..*self }
+        ControlGrid { columns: points.len() / self.rows, points, ..*self }.transposed(meter)
     }
 
-    fn transposed(&self) -> ControlGrid {
+    fn transposed(&self, meter: &Meter<'_>) -> Result<ControlGrid, Cancelled> {
         let (rows, columns) = (self.columns, self.rows);
-        let points = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j)));
-        let points = points.map(|(i, j)| self.points[j * self.columns + i]).collect();
+        let mut points = Vec::with_capacity(self.points.len());
+        for row in 0..rows {
+            meter.check()?;
+            points.extend((0..columns).map(|column| self.points[column * self.columns + row]));
+            meter.add(columns as u64);
+        }
         let ([a, b], [s, t]) = (self.closed, self.tension);
-        ControlGrid { points, rows, columns, closed: [b, a], tension: [t, s] }
+        Ok(ControlGrid { points, rows, columns, closed: [b, a], tension: [t, s] })
     }
 
     fn at(&self, row: usize, column: usize) -> DVec3 {
         self.points[(row % self.rows) * self.columns + column % self.columns].into()
     }
+}
+
+/// The points that are made and moved when a grid is made longer, or shorter, both ways.
+fn pass_points([rows, _]: [usize; 2], [longer_rows, longer_columns]: [usize; 2]) -> usize {
+    2 * longer_columns * (rows + longer_rows)
 }
 
 /// A grid of points, with the tangents from row to row and from column to column.

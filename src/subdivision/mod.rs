@@ -32,6 +32,9 @@ pub use tension::Tension;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SubdivisionError {
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] crate::Cancelled),
     /// Too few control points.
     #[error("{points} control points in {of}, allowed: {least} or more")]
     TooFewPoints {

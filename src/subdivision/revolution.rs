@@ -16,6 +16,7 @@ use super::quadric::ProfileMap;
 use super::{ControlPolygon, MOST_IN_MESH, SubdivisionError, check_levels};
 use crate::geom::QuadMesh;
 use crate::surface::stitch::{End, Knot, Knots, Layout, stitch};
+use crate::{Cancelled, Run};
 
 /// How an end of an open profile is closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,7 +117,8 @@ impl SubdivisionRevolution {
             points = points[1..points.len() - 1].to_vec();
         }
         self.map.apply(&mut points, None);
-        self.bare(points, self.path.points())
+        // Nobody cancels it.
+        self.bare(points, self.path.points(), &Run::default()).unwrap_or_default()
     }
 
     /// The points of the polygons after some levels along profile and path, without the limit
@@ -125,14 +127,25 @@ impl SubdivisionRevolution {
     /// # Errors
     /// [`SubdivisionError::Levels`] for more than 2²⁴ points.
     pub fn subdivided_mesh(&self, levels: [u32; 2]) -> Result<QuadMesh, SubdivisionError> {
+        self.subdivided_mesh_with(levels, &Run::default())
+    }
+
+    /// [`subdivided_mesh`](SubdivisionRevolution::subdivided_mesh) with a cancel token and a
+    /// progress sink; on one thread.
+    ///
+    /// # Errors
+    /// Those of [`subdivided_mesh`](SubdivisionRevolution::subdivided_mesh), and
+    /// [`SubdivisionError::Cancelled`].
+    pub fn subdivided_mesh_with(&self, levels: [u32; 2], run: &Run) -> Result<QuadMesh, SubdivisionError> {
         self.check(levels)?;
+        run.check()?;
         let mut points = self.profile.subdivided(levels[0])?.points();
         if !self.profile.is_closed() {
             // One point at each end, at whatever level, lies beyond and steers.
             points = points[1..points.len() - 1].to_vec();
         }
         self.map.apply(&mut points, None);
-        Ok(self.bare(points, self.path.subdivided(levels[1])?.points()))
+        Ok(self.bare(points, self.path.subdivided(levels[1])?.points(), run)?)
     }
 
     /// Points of the limit surface after some levels along profile and path, with its normals:
@@ -141,23 +154,27 @@ impl SubdivisionRevolution {
     /// # Errors
     /// [`SubdivisionError::Levels`] for more than 2²⁴ points.
     pub fn limit_mesh(&self, levels: [u32; 2]) -> Result<QuadMesh, SubdivisionError> {
+        self.limit_mesh_with(levels, &Run::default())
+    }
+
+    /// [`limit_mesh`](SubdivisionRevolution::limit_mesh) with a cancel token and a progress sink;
+    /// on one thread.
+    ///
+    /// # Errors
+    /// Those of [`limit_mesh`](SubdivisionRevolution::limit_mesh), and
+    /// [`SubdivisionError::Cancelled`].
+    pub fn limit_mesh_with(&self, levels: [u32; 2], run: &Run) -> Result<QuadMesh, SubdivisionError> {
         self.check(levels)?;
+        run.check()?;
         let line = |polygon: &ControlPolygon<DVec2>, levels: u32, map: ProfileMap| {
             let polygon = polygon.subdivided(levels)?;
             let (mut points, mut tangents) = (polygon.limit_points(), polygon.limit_tangents());
             map.apply(&mut points, Some(&mut tangents));
-            Ok(Line { points, normals: tangents.iter().map(|t| -t.perp()).collect() })
+            Ok::<_, SubdivisionError>(Line { points, normals: tangents.iter().map(|t| -t.perp()).collect() })
         };
         let profile = line(&self.profile, levels[0], self.map)?;
         let path = line(&self.path, levels[1], ProfileMap::None)?;
-        let mut mesh = QuadMesh::default();
-        for lower in [false, true] {
-            if !lower || self.both_sides {
-                let product = Product { profile: &profile, path: &path, sign: self.sign(), lower };
-                stitch(&product, self.layout(&profile, &path, lower), &mut mesh);
-            }
-        }
-        Ok(mesh)
+        Ok(self.stitched(&profile, &path, self.sign(), run)?)
     }
 
     fn check(&self, levels: [u32; 2]) -> Result<(), SubdivisionError> {
@@ -166,17 +183,26 @@ impl SubdivisionRevolution {
     }
 
     /// A mesh of positions and faces.
-    fn bare(&self, profile: Vec<DVec2>, path: Vec<DVec2>) -> QuadMesh {
+    fn bare(&self, profile: Vec<DVec2>, path: Vec<DVec2>, run: &Run) -> Result<QuadMesh, Cancelled> {
         let line = |points: Vec<DVec2>| Line { normals: vec![DVec2::ZERO; points.len()], points };
         let (profile, path) = (line(profile), line(path));
+        let mesh = self.stitched(&profile, &path, 1.0, run)?;
+        Ok(QuadMesh { normals: vec![], quad_corners: vec![], triangle_corners: vec![], ..mesh })
+    }
+
+    /// The faces between the points of a profile and of a path, on both sides if there are two.
+    fn stitched(&self, profile: &Line, path: &Line, sign: f64, run: &Run) -> Result<QuadMesh, Cancelled> {
+        let run = run.stage(0.0, 1.0);
         let mut mesh = QuadMesh::default();
-        for lower in [false, true] {
+        let upper = if self.both_sides { 0.5 } else { 1.0 };
+        for (lower, part) in [(false, run.stage(0.0, upper)), (true, run.stage(upper, 1.0))] {
             if !lower || self.both_sides {
-                let product = Product { profile: &profile, path: &path, sign: 1.0, lower };
-                stitch(&product, self.layout(&profile, &path, lower), &mut mesh);
+                let product = Product { profile, path, sign, lower };
+                stitch(&product, self.layout(profile, path, lower), &mut mesh, &part)?;
             }
         }
-        QuadMesh { normals: vec![], quad_corners: vec![], triangle_corners: vec![], ..mesh }
+        run.report(1.0);
+        Ok(mesh)
     }
 
     /// −1 if the outside is on the left of exactly one of the two polygons.

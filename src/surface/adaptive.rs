@@ -27,18 +27,26 @@ use super::parametric::{ParametricSurface, Shape};
 use super::patch::PatchError;
 use super::spacing::{Arc, Chain, Sample};
 use crate::geom::{Corner, QuadMesh};
+use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// Budgets tried until the mesh is within the tolerance and not far below it.
 const ATTEMPTS: usize = 5;
 
 /// The mesh of one sheet within `tolerance` of the surface, appended to `mesh`.
-pub(super) fn append(surface: &ParametricSurface, tolerance: f64, mesh: &mut QuadMesh) -> Result<(), PatchError> {
+pub(super) fn append(
+    surface: &ParametricSurface,
+    tolerance: f64,
+    mesh: &mut QuadMesh,
+    run: &Run,
+) -> Result<(), PatchError> {
     let rings = Rings::new(surface);
     let mut budget = tolerance;
     let mut best: Option<Draft> = None;
-    for _ in 0..ATTEMPTS {
-        let draft = rings.draft(budget);
-        let error = rings.deviation(&draft);
+    for attempt in 0..ATTEMPTS {
+        // Any of them may be the last: each is half of what is left.
+        let part = |attempt: usize| 1.0 - 0.5f64.powi(attempt as i32);
+        let (draft, error) = rings.measured(budget, &run.stage(part(attempt), part(attempt + 1)))?;
         let fits = error <= tolerance;
         if fits && best.as_ref().is_none_or(|b| draft.triangles.len() < b.triangles.len()) {
             best = Some(draft);
@@ -53,11 +61,15 @@ pub(super) fn append(surface: &ParametricSurface, tolerance: f64, mesh: &mut Qua
     // The least budget that was tried may still miss it: then on, by halves.
     let draft = match best {
         Some(draft) => draft,
-        None => (1..20)
-            .map(|halvings| rings.draft(budget * 0.5f64.powi(halvings)))
-            .find(|draft| rings.deviation(draft) <= tolerance)
-            .ok_or(PatchError::Tolerance { value: tolerance, least: rings.finest, most: rings.size })?,
+        None => {
+            let mut halved = (1..20).map(|halvings| rings.measured(budget * 0.5f64.powi(halvings), run));
+            // Whatever fits, or that it was cancelled.
+            let found = halved.find(|found| found.as_ref().map_or(true, |(_, error)| *error <= tolerance));
+            let missed = PatchError::Tolerance { value: tolerance, least: rings.finest, most: rings.size };
+            found.ok_or(missed)??.0
+        }
     };
+    run.check()?;
     rings.finish(&draft, mesh);
     Ok(())
 }
@@ -124,14 +136,24 @@ impl<'a> Rings<'a> {
         local.point.x.abs() * (0..16).map(steep).fold(0.0, f64::max)
     }
 
-    fn draft(&self, budget: f64) -> Draft {
+    /// A draft within a budget, and how far it is off.
+    fn measured(&self, budget: f64, run: &Run) -> Result<(Draft, f64), Cancelled> {
+        let [drawing, measuring] = run.stages([1.0, 3.0]);
+        let draft = self.draft(budget, &drawing)?;
+        let error = self.deviation(&draft, &measuring)?;
+        Ok((draft, error))
+    }
+
+    fn draft(&self, budget: f64, run: &Run) -> Result<Draft, Cancelled> {
         let half = 0.5 * budget;
         let least = if self.joined { 4 } else { 2 };
         let rows = self.meridian.chords(&self.along, half, least);
         let last = rows.len() - 1;
         let mut cache: HashMap<i32, Vec<f64>> = HashMap::new();
         let mut around = Vec::with_capacity(rows.len());
+        let meter = Meter::new(run, rows.len());
         for (i, &row) in rows.iter().enumerate() {
+            meter.step()?;
             if (i == 0 && self.poles[0]) || (i == last && self.poles[1]) {
                 around.push(vec![self.equator.range[0]]);
                 continue;
@@ -159,7 +181,7 @@ impl<'a> Rings<'a> {
         for i in 0..last {
             join(i, &around[i], &around[i + 1], &mut triangles);
         }
-        Draft { rows, around, triangles }
+        Ok(Draft { rows, around, triangles })
     }
 
     fn samples(&self, draft: &Draft) -> (Vec<Sample>, Vec<Vec<Sample>>) {
@@ -176,7 +198,8 @@ impl<'a> Rings<'a> {
 
     /// The largest distance of the surface from the planes of the triangles, over ten places of
     /// each.
-    fn deviation(&self, draft: &Draft) -> f64 {
+    fn deviation(&self, draft: &Draft, run: &Run) -> Result<f64, Cancelled> {
+        let meter = Meter::new(run, draft.triangles.len());
         let points: Vec<Vec<DVec3>> = draft
             .rows
             .iter()
@@ -185,6 +208,7 @@ impl<'a> Rings<'a> {
             .collect();
         let mut worst = 0.0f64;
         for corners in &draft.triangles {
+            meter.step()?;
             let [a, b, c] = corners.map(|(row, at)| points[row][at]);
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let rows = corners.map(|(row, _)| draft.rows[row]);
@@ -201,7 +225,7 @@ impl<'a> Rings<'a> {
                 worst = worst.max((p - a).dot(normal).abs());
             }
         }
-        worst
+        Ok(worst)
     }
 
     fn finish(&self, draft: &Draft, mesh: &mut QuadMesh) {

@@ -11,6 +11,7 @@ use super::polar::Lines;
 use super::spacing::{Arc, Sample};
 use super::stitch::{End, Knot, Knots, Layout, stitch};
 use crate::geom::{Mesh, MeshError, QuadMesh};
+use crate::{Cancelled, Run};
 
 /// How a parametric surface is meshed.
 ///
@@ -95,6 +96,9 @@ pub enum PatchError {
     /// The mesh is beyond single precision.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// The most rows or columns.
@@ -143,7 +147,37 @@ impl ParametricSurface {
     ///
     /// A setting out of its range, or a surface beyond single precision.
     pub fn mesh(&self, settings: &PatchSettings) -> Result<Mesh, PatchError> {
-        Ok(self.quad_mesh(settings)?.to_mesh()?)
+        self.mesh_with(settings, &Run::default())
+    }
+
+    /// [`mesh`](ParametricSurface::mesh) with a choice of threads, a cancel token and a progress
+    /// sink.
+    ///
+    /// ```
+    /// use rvachev::surface::{ParametricSurface, PatchError, PatchSettings};
+    /// use rvachev::{Run, Superellipsoid};
+    ///
+    /// let surface = ParametricSurface::of(&Superellipsoid::new([3.0, 2.0, 1.0], 0.5, 0.5))?;
+    /// let settings = PatchSettings { rows: 200, columns: 400, ..PatchSettings::default() };
+    /// let run = Run::default();
+    /// assert_eq!(surface.mesh_with(&settings, &run)?.triangles().len(), 2 * 199 * 400);
+    /// // Any clone of the token, on any thread, stops the work.
+    /// run.cancel.cancel();
+    /// assert!(matches!(surface.mesh_with(&settings, &run), Err(PatchError::Cancelled(_))));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Those of [`mesh`](ParametricSurface::mesh), and [`PatchError::Cancelled`].
+    pub fn mesh_with(&self, settings: &PatchSettings, run: &Run) -> Result<Mesh, PatchError> {
+        let run = run.stage(0.0, 1.0);
+        let [making, cutting] = run.stages([1.0, 1.0]);
+        let mesh = self.quad_mesh_with(settings, &making)?.to_mesh_with(&cutting);
+        mesh.map_err(|error| match error {
+            MeshError::Cancelled(cancelled) => cancelled.into(),
+            error => error.into(),
+        })
     }
 
     /// The same as quadrilaterals in double precision, with triangles at poles and clipped ends;
@@ -154,9 +188,24 @@ impl ParametricSurface {
     /// [`PatchError::Count`] or [`PatchError::Tolerance`] for a setting out of its range, and for a
     /// tolerance that is not met.
     pub fn quad_mesh(&self, settings: &PatchSettings) -> Result<QuadMesh, PatchError> {
+        self.quad_mesh_with(settings, &Run::default())
+    }
+
+    /// [`quad_mesh`](ParametricSurface::quad_mesh) with a cancel token and a progress sink; on one
+    /// thread.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`quad_mesh`](ParametricSurface::quad_mesh), and [`PatchError::Cancelled`].
+    pub fn quad_mesh_with(&self, settings: &PatchSettings, run: &Run) -> Result<QuadMesh, PatchError> {
         settings.check(self.shape)?;
+        let run = run.stage(0.0, 1.0);
         let mut mesh = QuadMesh::default();
-        for sheet in std::iter::once(*self).chain(self.other_sheet()) {
+        let sheets: Vec<ParametricSurface> = std::iter::once(*self).chain(self.other_sheet()).collect();
+        let part = |sheet: usize| sheet as f64 / sheets.len() as f64;
+        for (number, sheet) in sheets.iter().enumerate() {
+            let run = run.stage(part(number), part(number + 1));
+            run.check()?;
             if let Spacing::Chord(tolerance) = settings.spacing {
                 let size = self.size();
                 let [least, most] = adaptive::TOLERANCES.map(|share| share * size);
@@ -164,13 +213,14 @@ impl ParametricSurface {
                     return Err(PatchError::Tolerance { value: tolerance, least, most });
                 }
                 if !matches!(self.shape, Shape::BarrBowl { .. }) {
-                    adaptive::append(&sheet, tolerance, &mut mesh)?;
+                    adaptive::append(sheet, tolerance, &mut mesh, &run)?;
                     continue;
                 }
             }
-            let grid = Grid::new(&sheet, settings)?;
-            stitch(&grid, grid.layout(), &mut mesh);
+            let grid = Grid::new(sheet, settings, &run)?;
+            stitch(&grid, grid.layout(), &mut mesh, &run)?;
         }
+        run.report(1.0);
         Ok(mesh)
     }
 }
@@ -192,14 +242,14 @@ enum Product {
 }
 
 impl<'a> Grid<'a> {
-    fn new(surface: &'a ParametricSurface, settings: &PatchSettings) -> Result<Grid<'a>, PatchError> {
+    fn new(surface: &'a ParametricSurface, settings: &PatchSettings, run: &Run) -> Result<Grid<'a>, PatchError> {
         let PatchSettings { rows, columns, spacing } = *settings;
         if let Shape::BarrBowl { end, e1, e2 } = surface.shape {
             let (bowl, counts) = ([end, e1, e2], [rows, columns]);
             let lines = match spacing {
                 Spacing::UniformAngle => ParametricSurface::polar_uniform(counts),
                 Spacing::EqualArc => surface.polar_equal(bowl, counts),
-                Spacing::Chord(tolerance) => surface.polar_chords(bowl, tolerance)?,
+                Spacing::Chord(tolerance) => surface.polar_chords(bowl, tolerance, run)?,
             };
             let [rows, columns] = lines.counts();
             return Ok(Grid { surface, rows, columns, product: Product::Polar { bowl, lines } });

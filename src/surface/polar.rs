@@ -19,7 +19,7 @@ use super::parametric::ParametricSurface;
 use super::patch::PatchError;
 use super::spacing::{Chain, equal_steps};
 use super::stitch::Knot;
-use crate::rad;
+use crate::{Run, rad};
 
 /// How the logarithm of ξ is divided between the two secants, η's first: the logarithms of their
 /// shares, and the sides of the axes that the column is on.
@@ -121,12 +121,13 @@ impl ParametricSurface {
     ///
     /// # Errors
     /// A tolerance that is not met with [`MOST_LINES`] rows.
-    pub(super) fn polar_chords(&self, bowl: [f64; 3], tolerance: f64) -> Result<Lines, PatchError> {
+    pub(super) fn polar_chords(&self, bowl: [f64; 3], tolerance: f64, run: &Run) -> Result<Lines, PatchError> {
         if let Some(lines) = self.polar_fitted(bowl, tolerance) {
             return Ok(lines);
         }
         let mut rows = 4;
         loop {
+            run.check()?;
             // All quarters are alike.
             let fine = |count: u32, most: f64| {
                 let steps = count * PARTS as u32;

@@ -16,6 +16,8 @@ use glam::{DVec2, DVec3};
 use super::curve::By;
 use super::parametric::{ParametricSurface, Shape};
 use super::patch::{PatchError, count};
+use crate::Run;
+use rvachev_num::Meter;
 
 /// A point of a surface with its outward unit normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +53,9 @@ const CELLS: usize = 256;
 /// The most points of one call.
 const MOST: u64 = 1 << 27;
 
+/// Points that are drawn before it is looked whether to go on.
+const CHUNK: usize = 4096;
+
 impl ParametricSurface {
     /// `n` points with normals, uniform by area over the curved surface (its flat ends are not
     /// sampled; of two sheets, this one). The same seed gives the same points.
@@ -75,10 +80,30 @@ impl ParametricSurface {
     ///
     /// More than 2²⁷ points.
     pub fn sample(&self, n: usize, seed: u64) -> Result<Vec<SurfacePoint>, PatchError> {
+        self.sample_with(n, seed, &Run::default())
+    }
+
+    /// [`sample`](ParametricSurface::sample) with a cancel token and a progress sink; on one
+    /// thread.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`sample`](ParametricSurface::sample), and [`PatchError::Cancelled`].
+    pub fn sample_with(&self, n: usize, seed: u64, run: &Run) -> Result<Vec<SurfacePoint>, PatchError> {
         count("n", n as u64, 0, MOST)?;
+        let run = run.stage(0.0, 1.0);
         let cells = Cells::new(self);
         let mut random = SplitMix(seed);
-        Ok((0..n).map(|_| cells.draw(&mut random)).collect())
+        let meter = Meter::new(&run, n);
+        let mut points = Vec::with_capacity(n);
+        while points.len() < n {
+            meter.check()?;
+            let chunk = CHUNK.min(n - points.len());
+            points.extend((0..chunk).map(|_| cells.draw(&mut random)));
+            meter.add(chunk as u64);
+        }
+        run.report(1.0);
+        Ok(points)
     }
 }
 

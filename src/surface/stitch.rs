@@ -13,6 +13,8 @@
 use glam::{DVec2, DVec3};
 
 use crate::geom::{Corner, QuadMesh};
+use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// A vertex of a grid with the normals of its four sides.
 #[derive(Clone, Copy)]
@@ -64,7 +66,7 @@ pub(crate) trait Knots {
 }
 
 /// Appends the faces of a grid to a mesh.
-pub(crate) fn stitch(knots: &impl Knots, layout: Layout, mesh: &mut QuadMesh) {
+pub(crate) fn stitch(knots: &impl Knots, layout: Layout, mesh: &mut QuadMesh, run: &Run) -> Result<(), Cancelled> {
     let open = |end: usize| layout.ends.is_some_and(|ends| ends[end] != End::Pole);
     let (first, last) = match layout.ends {
         None => (0, layout.rows - 1),
@@ -73,7 +75,7 @@ pub(crate) fn stitch(knots: &impl Knots, layout: Layout, mesh: &mut QuadMesh) {
     let rings = last - first + 1;
     let width = layout.columns + u32::from(!layout.columns_join);
     let base = mesh.positions.len() as u32;
-    Stitcher { knots, layout, mesh, base, first, rings, width }.stitch();
+    Stitcher { knots, layout, mesh, base, first, rings, width }.stitch(run)
 }
 
 struct Stitcher<'a, K> {
@@ -90,20 +92,23 @@ struct Stitcher<'a, K> {
 }
 
 impl<K: Knots> Stitcher<'_, K> {
-    fn stitch(mut self) {
+    fn stitch(mut self, run: &Run) -> Result<(), Cancelled> {
+        let strips = if self.layout.ends.is_none() { self.rings } else { self.rings - 1 };
+        let meter = Meter::new(run, self.rings + strips);
         for ring in 0..self.rings {
+            meter.step()?;
             for column in 0..self.width {
                 let knot = self.knots.knot(self.first + ring, column);
                 self.vertex(knot.point, knot.normal);
             }
         }
-        let strips = if self.layout.ends.is_none() { self.rings } else { self.rings - 1 };
         for strip in 0..strips {
+            meter.step()?;
             for column in 0..self.layout.columns {
                 self.quad(strip, column);
             }
         }
-        let Some(ends) = self.layout.ends else { return };
+        let Some(ends) = self.layout.ends else { return Ok(()) };
         for (end, row) in ends.into_iter().zip([0, self.layout.rows]) {
             match end {
                 End::Pole => self.pole(row),
@@ -111,6 +116,7 @@ impl<K: Knots> Stitcher<'_, K> {
                 End::Open => {}
             }
         }
+        Ok(())
     }
 
     fn vertex(&mut self, point: DVec3, normal: DVec3) -> u32 {

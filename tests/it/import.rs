@@ -7,6 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
+use crate::runs::{heeds, laden};
 use glam::{DVec3, Vec3};
 use rvachev::error::{LoadError, ReadError, SaveError};
 use rvachev::io::{
@@ -429,4 +430,12 @@ fn files_are_written_and_read_under_a_run() {
     assert_eq!(PointCloud::load(&path).unwrap().len(), cloud.len());
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 6, "no temporary file is left");
     fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn readers_heed_a_run() {
+    let (mut bytes, settings) = (Vec::new(), LoadSettings::default());
+    write_ply(&laden(), &mut bytes).unwrap();
+    heeds("reading a mesh", 15, 0.35, |run| Mesh::read_on(FileFormat::Ply, &bytes[..], &settings, run));
+    heeds("reading points", 5, 0.7, |run| PointCloud::read_on(FileFormat::Ply, &bytes[..], &settings, run));
 }

@@ -54,6 +54,7 @@ mod raster;
 mod rays;
 mod recovery;
 mod rfunction;
+mod runs;
 mod sampling;
 mod scale;
 mod sections;

@@ -8,7 +8,7 @@ use rvachev::{
 };
 
 /// A run, and what it reports.
-fn recorded() -> (Run, Arc<Mutex<Vec<f64>>>) {
+pub fn recorded() -> (Run, Arc<Mutex<Vec<f64>>>) {
     let seen = Arc::new(Mutex::new(Vec::new()));
     let sink = seen.clone();
     let progress = Some(Progress::new(move |fraction| sink.lock().unwrap().push(fraction)));
@@ -16,7 +16,7 @@ fn recorded() -> (Run, Arc<Mutex<Vec<f64>>>) {
 }
 
 /// Checks that the reports rise from about 0 to 1 in many small steps.
-fn flows(what: &str, seen: &Mutex<Vec<f64>>, least: usize, widest: f64) {
+pub fn flows(what: &str, seen: &Mutex<Vec<f64>>, least: usize, widest: f64) {
     let seen = seen.lock().unwrap();
     assert!(seen.windows(2).all(|pair| pair[0] < pair[1]), "{what}: {seen:?}");
     assert_eq!(seen.last(), Some(&1.0), "{what}");
@@ -24,7 +24,7 @@ fn flows(what: &str, seen: &Mutex<Vec<f64>>, least: usize, widest: f64) {
     assert!(seen.len() >= least && gap <= widest, "{what}: {} reports, {gap:.3} at once", seen.len());
 }
 
-fn part() -> Solid {
+pub fn part() -> Solid {
     let holes = Solid::cylinder(0.3, 4.0).translate([1.5, 0.0, 0.0]).repeat_polar(6);
     (Solid::superellipsoid([2.5, 2.5, 0.7], 0.4, 1.0) | Solid::torus(1.8, 0.4)) - holes
 }

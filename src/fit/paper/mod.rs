@@ -104,8 +104,8 @@ pub fn supershape_union_with(segments: &Segments, settings: &UnionSettings, run:
 }
 
 fn fitted(segments: &Segments, settings: &UnionSettings, run: &Run) -> Result<UnionFit, FitError> {
-    let scene = Scene::of(segments, &settings.fit)?;
-    let [first, second, third] = run.stages([5.0, 2.0, 3.0]);
+    let [before, first, second, third] = run.stages([0.2, 5.0, 2.0, 3.0]);
+    let scene = Scene::of(segments, &settings.fit, &before)?;
     let names = segments.names();
     let of = |name: &u32| (0..scene.points.len()).filter(|i| scene.labels[*i] == *name).collect();
     let mut members: Vec<Vec<usize>> = names.iter().map(of).collect();

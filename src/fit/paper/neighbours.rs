@@ -1,9 +1,11 @@
 //! Which points of a surface are beside each other, and where it is creased inwards.
 
 use glam::DVec3;
+use rvachev_num::Meter;
 
 use crate::fit::grid::{Grid, extent};
 use crate::fit::linear::median;
+use crate::{Cancelled, Run};
 
 /// Neighbours of a point that are asked for.
 const COUNT: usize = 8;
@@ -20,9 +22,9 @@ pub(super) struct Neighbours {
 
 impl Neighbours {
     /// Of a cloud of any size; points in one place are neighbours.
-    pub(super) fn new(points: &[DVec3]) -> Neighbours {
+    pub(super) fn new(points: &[DVec3], run: &Run) -> Result<Neighbours, Cancelled> {
         if points.is_empty() {
-            return Neighbours { of: Vec::new(), spacing: 0.0 };
+            return Ok(Neighbours { of: Vec::new(), spacing: 0.0 });
         }
         let bounds = extent(points);
         let size = bounds[1] - bounds[0];
@@ -30,7 +32,9 @@ impl Neighbours {
         let grid = Grid::new(points, bounds, cell);
         let (mut found, mut nearest) = (Vec::new(), Vec::with_capacity(points.len()));
         let mut of = vec![Vec::new(); points.len()];
+        let meter = Meter::new(run, points.len());
         for (i, p) in points.iter().enumerate() {
+            meter.step()?;
             grid.nearest(*p, COUNT + 1, &mut found);
             let others = found.iter().filter(|f| f.1 as usize != i);
             nearest.push(others.clone().map(|f| f.0).next().unwrap_or(0.0).sqrt());
@@ -45,7 +49,7 @@ impl Neighbours {
                 }
             }
         }
-        Neighbours { of, spacing: median(&mut nearest) }
+        Ok(Neighbours { of, spacing: median(&mut nearest) })
     }
 
     pub(super) fn of(&self, i: usize) -> &[u32] {

@@ -8,6 +8,7 @@ use super::oriented_box::{OrientedBox, Side};
 use super::segment::{Found, Judge};
 use super::segments::Segments;
 use super::truncated::{Truncated, box_axes};
+use crate::Run;
 use crate::fit::cloud::Scaled;
 use crate::fit::cost::Cost;
 use crate::fit::error::FitError;
@@ -41,12 +42,12 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    pub(super) fn of(segments: &Segments, settings: &FitSettings) -> Result<Scene, FitError> {
+    pub(super) fn of(segments: &Segments, settings: &FitSettings, run: &Run) -> Result<Scene, FitError> {
         let cloud = segments.cloud();
         let Scaled { center, size, .. } = Scaled::of(cloud, settings, "union of supershapes", gielis::PARAMETERS)?;
         let points: Vec<DVec3> = cloud.positions().iter().map(|p| (*p - center) / size).collect();
         let normals = cloud.normals().map(|all| all.iter().map(|n| n.as_dvec3()).collect());
-        let near = Neighbours::new(&points);
+        let near = Neighbours::new(&points, run)?;
         Ok(Scene { points, normals, labels: segments.labels().to_vec(), near, center, size })
     }
 

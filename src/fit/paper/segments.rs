@@ -1,13 +1,16 @@
 //! Points of a surface, cut into segments.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec3, Vec3};
+use rvachev_num::Meter;
 
 use super::neighbours::Neighbours;
 use super::sampling::spread;
 use super::watershed::watershed;
 use crate::fit::error::FitError;
 use crate::geom::{Mesh, PointCloud};
-use crate::{Angle, deg};
+use crate::{Angle, Run, deg};
 
 /// Points that a mesh is sampled by, and points of a labelled segment at least.
 const SAMPLES: usize = 6000;
@@ -53,17 +56,29 @@ impl Segments {
     ///
     /// [`FitError::Labels`] if there are not as many labels as triangles.
     pub fn of_mesh(mesh: &Mesh, labels: &[u32]) -> Result<Segments, FitError> {
+        Segments::of_mesh_with(mesh, labels, &Run::default())
+    }
+
+    /// [`of_mesh`](Segments::of_mesh) with a cancel token and a progress sink; on one thread.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`of_mesh`](Segments::of_mesh), and [`FitError::Cancelled`].
+    pub fn of_mesh_with(mesh: &Mesh, labels: &[u32], run: &Run) -> Result<Segments, FitError> {
         let count = mesh.triangles().len();
         if labels.len() != count {
             return Err(FitError::Labels { labels: labels.len(), count, of: "triangles" });
         }
-        let mut names: Vec<u32> = labels.to_vec();
-        names.sort_unstable();
-        names.dedup();
+        let run = run.stage(0.0, 1.0);
+        let mut named: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (t, name) in labels.iter().enumerate() {
+            named.entry(*name).or_default().push(t);
+        }
         let whole = mesh.area();
         let mut sampled = (Vec::new(), Vec::new(), Vec::new());
-        for name in names {
-            let of: Vec<usize> = (0..count).filter(|t| labels[*t] == name).collect();
+        let meter = Meter::new(&run, named.len());
+        for (name, of) in named {
+            meter.step()?;
             let area: f64 = of.iter().map(|t| area(mesh.corners(mesh.triangles()[*t]))).sum();
             let share = if whole > 0.0 { area / whole } else { 0.0 };
             for at in spread(mesh, &of, ((SAMPLES as f64 * share) as usize).max(LEAST)) {
@@ -72,6 +87,7 @@ impl Segments {
                 sampled.2.push(name);
             }
         }
+        run.report(1.0);
         Ok(Segments { cloud: oriented(sampled.0, sampled.1), labels: sampled.2 })
     }
 
@@ -82,11 +98,34 @@ impl Segments {
     ///
     /// [`FitError::Setting`] if the angle is not within 1° to 90°.
     pub fn of_mesh_by_creases(mesh: &Mesh, crease: impl Into<Angle>) -> Result<Segments, FitError> {
+        Segments::of_mesh_by_creases_with(mesh, crease, &Run::default())
+    }
+
+    /// [`of_mesh_by_creases`](Segments::of_mesh_by_creases) with a cancel token and a progress
+    /// sink; on one thread.
+    ///
+    /// ```
+    /// use rvachev::fit::Segments;
+    /// use rvachev::{MeshSettings, Progress, Run, Solid, deg};
+    ///
+    /// let pair = Solid::cuboid([2.0, 2.0, 2.0]) | Solid::cuboid([1.0, 1.0, 3.0]).translate([0.0, 0.0, 1.0]);
+    /// let mesh = pair.mesh(&MeshSettings::default())?;
+    /// let progress = Some(Progress::new(|part| println!("{:.0} %", 100.0 * part)));
+    /// let segments = Segments::of_mesh_by_creases_with(&mesh, deg(30.0), &Run { progress, ..Run::default() })?;
+    /// assert_eq!(segments.count(), 2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Those of [`of_mesh_by_creases`](Segments::of_mesh_by_creases), and [`FitError::Cancelled`].
+    pub fn of_mesh_by_creases_with(mesh: &Mesh, crease: impl Into<Angle>, run: &Run) -> Result<Segments, FitError> {
+        run.check()?;
         let all: Vec<usize> = (0..mesh.triangles().len()).collect();
         let sampled = spread(mesh, &all, SAMPLES);
         let points = sampled.iter().map(|s| s.point).collect();
         let normals = sampled.iter().map(|s| s.normal.as_vec3()).collect();
-        Segments::of_cloud_by_creases(&oriented(points, normals), crease)
+        Segments::of_cloud_by_creases_with(&oriented(points, normals), crease, run)
     }
 
     /// A cloud with normals, cut where its surface turns inwards by more than an angle from a point
@@ -101,6 +140,21 @@ impl Segments {
     ///
     /// [`FitError::NoNormals`], and [`FitError::Setting`] if the angle is not within 1° to 90°.
     pub fn of_cloud_by_creases(cloud: &PointCloud, crease: impl Into<Angle>) -> Result<Segments, FitError> {
+        Segments::of_cloud_by_creases_with(cloud, crease, &Run::default())
+    }
+
+    /// [`of_cloud_by_creases`](Segments::of_cloud_by_creases) with a cancel token and a progress
+    /// sink; on one thread.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`of_cloud_by_creases`](Segments::of_cloud_by_creases), and
+    /// [`FitError::Cancelled`].
+    pub fn of_cloud_by_creases_with(
+        cloud: &PointCloud,
+        crease: impl Into<Angle>,
+        run: &Run,
+    ) -> Result<Segments, FitError> {
         let crease = crease.into();
         if !(deg(1.0).radians()..=deg(90.0).radians() + 1e-12).contains(&crease.radians()) {
             let value = format!("{}°", crease.radians().to_degrees());
@@ -108,8 +162,11 @@ impl Segments {
         }
         let Some(normals) = cloud.normals() else { return Err(FitError::NoNormals { points: cloud.len() }) };
         let normals: Vec<DVec3> = normals.iter().map(|n| n.as_dvec3().normalize_or_zero()).collect();
-        let near = Neighbours::new(cloud.positions());
-        let labels = watershed(cloud.positions(), &normals, &near, crease.radians().cos());
+        let run = run.stage(0.0, 1.0);
+        let [searching, flooding] = run.stages([1.0, 2.0]);
+        let near = Neighbours::new(cloud.positions(), &searching)?;
+        let labels = watershed(cloud.positions(), &normals, &near, crease.radians().cos(), &flooding)?;
+        run.report(1.0);
         Ok(Segments { cloud: cloud.clone(), labels })
     }
 

@@ -22,10 +22,12 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
+use rvachev_num::Meter;
 
 use super::neighbours::{Link, Neighbours, link};
 use crate::fit::grid::{Grid, extent};
 use crate::fit::linear::Principal;
+use crate::{Cancelled, Run};
 
 /// Two floods that meet are one where the pass is higher than this times the lower summit.
 const PASS: f64 = 0.8;
@@ -50,28 +52,35 @@ pub(super) const FEWEST: usize = 60;
 const FLAT: f64 = 1e-3;
 
 /// A label for each point, from 0 on in the order of the points. `crease` is a cosine.
-pub(super) fn watershed(points: &[DVec3], normals: &[DVec3], near: &Neighbours, crease: f64) -> Vec<u32> {
+pub(super) fn watershed(
+    points: &[DVec3],
+    normals: &[DVec3],
+    near: &Neighbours,
+    crease: f64,
+    run: &Run,
+) -> Result<Vec<u32>, Cancelled> {
+    let [measuring, flooding, small, convex] = run.stages([4.0, 4.0, 2.0, 1.0]);
     let between = |i: usize, j: usize| link([points[i], points[j]], [normals[i], normals[j]], crease);
     let open = |i: usize| near.of(i).iter().map(|j| *j as usize).filter(move |j| between(i, *j) == Link::Open);
     let is_creased = |i: usize| near.of(i).iter().any(|j| between(i, *j as usize) == Link::Crease);
-    let away = distances(points, &open, is_creased);
+    let away = distances(points, &open, is_creased, &measuring)?;
     let mut floods = Floods::new(points.len());
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|i, j| away[*j].total_cmp(&away[*i]).then(i.cmp(j)));
+    let meter = Meter::new(&flooding, points.len());
     for i in order {
+        meter.step()?;
         floods.flood(i, away[i], open(i));
     }
     let mut labels: Vec<usize> = (0..points.len()).map(|i| floods.summit_of(i)).collect();
-    join_small(points, near, &mut labels);
-    join_convex(points, normals, near, &between, &mut labels);
+    join_small(points, near, &mut labels, &small)?;
+    join_convex(points, normals, near, &between, &mut labels, &convex)?;
     let mut numbers = BTreeMap::new();
-    labels
-        .iter()
-        .map(|summit| {
-            let next = numbers.len() as u32;
-            *numbers.entry(*summit).or_insert(next)
-        })
-        .collect()
+    let numbered = labels.iter().map(|summit| {
+        let next = numbers.len() as u32;
+        *numbers.entry(*summit).or_insert(next)
+    });
+    Ok(numbered.collect())
 }
 
 /// The distance from the nearest crease of the same part of the surface; infinite where there is
@@ -80,7 +89,9 @@ fn distances<I: Iterator<Item = usize>>(
     points: &[DVec3],
     open: &impl Fn(usize) -> I,
     is_creased: impl Fn(usize) -> bool,
-) -> Vec<f64> {
+    run: &Run,
+) -> Result<Vec<f64>, Cancelled> {
+    let meter = Meter::new(run, points.len());
     let mut away = vec![f64::INFINITY; points.len()];
     let mut is_seen = vec![false; points.len()];
     for start in 0..points.len() {
@@ -107,11 +118,12 @@ fn distances<I: Iterator<Item = usize>>(
         let grid = Grid::new(&creases, bounds, cell);
         let mut found = Vec::new();
         for i in part {
+            meter.step()?;
             grid.nearest(points[i], 1, &mut found);
             away[i] = found.first().map_or(f64::INFINITY, |f| f.0.sqrt());
         }
     }
-    away
+    Ok(away)
 }
 
 /// Disjoint sets of points, each with the height of its summit.
@@ -173,8 +185,12 @@ fn join_convex(
     near: &Neighbours,
     between: &impl Fn(usize, usize) -> Link,
     labels: &mut [usize],
-) {
+    run: &Run,
+) -> Result<(), Cancelled> {
+    // Each round but the last makes one of two.
+    let meter = Meter::new(run, by_label(labels).len());
     loop {
+        meter.step()?;
         let members = by_label(labels);
         // Links over each border: open ones, and over a crease.
         let mut borders: BTreeMap<[usize; 2], [usize; 2]> = BTreeMap::new();
@@ -193,7 +209,7 @@ fn join_convex(
             borders.iter().filter(|(_, links)| is_open(links)).map(|(pair, _)| *pair).collect();
         let share = |[a, b]: &[usize; 2]| concave(points, normals, &members[a], &members[b]);
         let shares = pairs.iter().map(|pair| (share(pair), *pair)).filter(|(share, _)| *share < CONCAVE);
-        let Some((_, [a, b])) = shares.min_by(|x, y| x.0.total_cmp(&y.0)) else { return };
+        let Some((_, [a, b])) = shares.min_by(|x, y| x.0.total_cmp(&y.0)) else { return Ok(()) };
         members[&b].iter().for_each(|i| labels[*i] = a);
     }
 }
@@ -214,16 +230,19 @@ fn concave(points: &[DVec3], normals: &[DVec3], a: &[usize], b: &[usize]) -> f64
 }
 
 /// Joins small and flat segments to the one that they have the longest border with.
-fn join_small(points: &[DVec3], near: &Neighbours, labels: &mut [usize]) {
+fn join_small(points: &[DVec3], near: &Neighbours, labels: &mut [usize], run: &Run) -> Result<(), Cancelled> {
     let mut left_alone = Vec::new();
+    // Each round but the last joins one, or leaves it alone.
+    let meter = Meter::new(run, by_label(labels).len() + 1);
     loop {
+        meter.step()?;
         let members = by_label(labels);
         let is_small = |of: &Vec<usize>| {
             let [least, middle, _] = Principal::of(of.iter().map(|i| points[*i])).variances;
             of.len() < FEWEST || least <= FLAT * FLAT * middle
         };
         let small = members.iter().filter(|(label, of)| !left_alone.contains(*label) && is_small(of));
-        let Some((&label, of)) = small.min_by_key(|(label, of)| (of.len(), **label)) else { return };
+        let Some((&label, of)) = small.min_by_key(|(label, of)| (of.len(), **label)) else { return Ok(()) };
         let mut borders: BTreeMap<usize, usize> = BTreeMap::new();
         for j in of.iter().flat_map(|i| near.of(*i)) {
             let other = labels[*j as usize];

@@ -102,8 +102,35 @@ impl Mesh {
     ///
     /// [`ReadError`], naming the line or the byte; that there are points but no triangles is one.
     pub fn read(format: FileFormat, input: impl Read, settings: &LoadSettings) -> Result<Mesh, ReadError> {
-        let (shape, scale) = format.read(input, &Limits::new(settings, 0, &Run::default()))?;
-        shape.into_mesh(scale)
+        Mesh::read_on(format, input, settings, &Run::default())
+    }
+
+    /// [`read`](Mesh::read) on a [`Run`], which is told roughly how much is read once the bytes are
+    /// there, and may be cancelled.
+    ///
+    /// ```
+    /// use rvachev::io::{FileFormat, LoadSettings, ReadError, write_ply};
+    /// use rvachev::{Mesh, MeshSettings, Run, Solid};
+    ///
+    /// let mut bytes = Vec::new();
+    /// write_ply(&Solid::sphere(1.0).mesh(&MeshSettings::default())?, &mut bytes)?;
+    /// let run = Run::default();
+    /// run.cancel.cancel();
+    /// let stopped = Mesh::read_on(FileFormat::Ply, &bytes[..], &LoadSettings::default(), &run);
+    /// assert!(matches!(stopped, Err(ReadError::Cancelled(_))));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Those of [`read`](Mesh::read), and [`ReadError::Cancelled`].
+    pub fn read_on(
+        format: FileFormat,
+        input: impl Read,
+        settings: &LoadSettings,
+        run: &Run,
+    ) -> Result<Mesh, ReadError> {
+        read(format, input, settings, (0, run), Shape::into_mesh)
     }
 }
 
@@ -127,7 +154,39 @@ impl PointCloud {
     ///
     /// [`ReadError`], naming the line or the byte.
     pub fn read(format: FileFormat, input: impl Read, settings: &LoadSettings) -> Result<PointCloud, ReadError> {
-        let (shape, scale) = format.read(input, &Limits::new(settings, 0, &Run::default()))?;
-        shape.into_cloud(scale)
+        PointCloud::read_on(format, input, settings, &Run::default())
     }
+
+    /// [`read`](PointCloud::read) on a [`Run`], which is told roughly how much is read once the
+    /// bytes are there, and may be cancelled.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`read`](PointCloud::read), and [`ReadError::Cancelled`].
+    pub fn read_on(
+        format: FileFormat,
+        input: impl Read,
+        settings: &LoadSettings,
+        run: &Run,
+    ) -> Result<PointCloud, ReadError> {
+        read(format, input, settings, (0, run), Shape::into_cloud)
+    }
+}
+
+/// What is made of all of `input`, on a run; of so many `bytes`, 0 if that is not known.
+pub(super) fn read<T>(
+    format: FileFormat,
+    input: impl Read,
+    settings: &LoadSettings,
+    (bytes, run): (u64, &Run),
+    made: impl FnOnce(Shape, f64) -> Result<T, ReadError>,
+) -> Result<T, ReadError> {
+    let run = run.stage(0.0, 1.0);
+    let [to_read, _] = run.stages([0.9, 0.1]);
+    let (shape, scale) = format.read(input, &Limits::new(settings, bytes, &to_read))?;
+    run.check()?;
+    let made = made(shape, scale)?;
+    run.check()?;
+    run.report(1.0);
+    Ok(made)
 }

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use super::limits::Limits;
+use super::format::read;
 use super::shape::Shape;
 use super::{FileFormat, LoadSettings, ReadError};
 use crate::geom::{Mesh, PointCloud};
@@ -45,22 +45,15 @@ fn load<T>(
     made: impl FnOnce(Shape, f64) -> Result<T, ReadError>,
 ) -> Result<T, LoadError> {
     let format = FileFormat::of(path, points)?;
-    let run = run.stage(0.0, 1.0);
-    let [to_read, _] = run.stages([0.9, 0.1]);
-    let read = || {
+    let opened = || {
         let file = File::open(path)?;
         let bytes = file.metadata().map_or(0, |about| about.len());
-        let (shape, scale) = format.read(file, &Limits::new(settings, bytes, &to_read))?;
-        let made = made(shape, scale)?;
-        run.check()?;
-        Ok(made)
+        read(format, file, settings, (bytes, run), made)
     };
-    let loaded = read().map_err(|error| match error {
+    opened().map_err(|error| match error {
         ReadError::Cancelled(cancelled) => LoadError::Cancelled(cancelled),
         source => LoadError::Read { path: path.into(), source },
-    })?;
-    run.report(1.0);
-    Ok(loaded)
+    })
 }
 
 impl Mesh {

@@ -80,11 +80,14 @@ pub struct OpenEdges {
 
 impl OpenEdges {
     /// Of triangles, by positions and their numbers. Vertices at one position are one vertex.
-    pub fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> OpenEdges {
-        // A run that nobody else holds is not cancelled.
-        let edges = rim::open_edges(positions, triangles, &Run::default()).unwrap_or_default();
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if the run is stopped.
+    pub fn of(positions: &[Vec3], triangles: &[[u32; 3]], run: &Run) -> Result<OpenEdges, Cancelled> {
+        let edges = rim::open_edges(positions, triangles, run)?;
         let length = |edge: &rim::OpenEdge| f64::from(edge.missing) * edge.ends[0].distance(edge.ends[1]);
-        OpenEdges { edges: edges.len(), length: edges.iter().map(length).sum() }
+        Ok(OpenEdges { edges: edges.len(), length: edges.iter().map(length).sum() })
     }
 }
 

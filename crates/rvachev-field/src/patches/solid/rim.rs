@@ -28,7 +28,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
-use rvachev_num::{Cancelled, Run};
+use rvachev_num::{Cancelled, Meter, Run};
 
 use super::super::face::double;
 use super::super::hierarchy::PARENT;
@@ -49,7 +49,10 @@ pub(super) struct OpenEdge {
 
 /// The open edges of triangles. Vertices at one position are one vertex.
 pub(super) fn open_edges(positions: &[Vec3], triangles: &[[u32; 3]], run: &Run) -> Result<Vec<OpenEdge>, Cancelled> {
-    open_edges_of(positions, &welded(positions, triangles, run)?, run)
+    let [to_weld, to_open] = run.stages([1.0, 1.0]);
+    let welded = welded(positions, triangles, &to_weld)?;
+    to_weld.report(1.0);
+    open_edges_of(positions, &welded, &to_open)
 }
 
 /// The triangles by the first vertex at each position.
@@ -69,9 +72,11 @@ pub(super) fn open_edges_of(positions: &[Vec3], triangles: &[[u32; 3]], run: &Ru
     };
     // Those of each vertex with the lesser number are together.
     let mut starts = vec![0_usize; positions.len() + 1];
+    let meter = Meter::new(run, 2 * triangles.len() + positions.len());
     for triangles in triangles.chunks(AT_ONCE) {
-        run.check()?;
+        meter.check()?;
         triangles.iter().flat_map(edges_of).for_each(|(from, to)| starts[from.min(to) as usize + 1] += 1);
+        meter.add(triangles.len() as u64);
     }
     for v in 0..positions.len() {
         starts[v + 1] += starts[v];
@@ -79,7 +84,8 @@ pub(super) fn open_edges_of(positions: &[Vec3], triangles: &[[u32; 3]], run: &Ru
     let mut edges = vec![(0_u32, false); starts[positions.len()]];
     let mut next = starts.clone();
     for triangles in triangles.chunks(AT_ONCE) {
-        run.check()?;
+        meter.check()?;
+        meter.add(triangles.len() as u64);
         for (from, to) in triangles.iter().flat_map(edges_of) {
             let at = &mut next[from.min(to) as usize];
             edges[*at] = (from.max(to), from < to);
@@ -89,7 +95,8 @@ pub(super) fn open_edges_of(positions: &[Vec3], triangles: &[[u32; 3]], run: &Ru
     let mut open = Vec::new();
     for (least, ends) in (0_u32..).zip(starts.windows(2)) {
         if (least as usize).is_multiple_of(AT_ONCE) {
-            run.check()?;
+            meter.check()?;
+            meter.add(AT_ONCE.min(positions.len() - least as usize) as u64);
         }
         let own = &mut edges[ends[0]..ends[1]];
         own.sort_unstable();
