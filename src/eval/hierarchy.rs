@@ -6,7 +6,6 @@
 
 use glam::DVec3;
 
-use super::code::grow;
 use crate::Bounds;
 
 /// Joins of fewer operands are scanned.
@@ -28,12 +27,19 @@ impl Reach {
         Reach { bounds, growth: DVec3::ZERO }
     }
 
+    /// One that holds both: where one is nowhere, at least the other.
+    #[inline(always)]
     fn union(&self, other: &Reach) -> Reach {
-        Reach { bounds: self.bounds.union(&other.bounds), growth: self.growth.max(other.growth) }
+        let (a, b) = (&self.bounds, &other.bounds);
+        Reach { bounds: Bounds::new(a.min.min(b.min), a.max.max(b.max)), growth: self.growth.max(other.growth) }
     }
 
+    /// Whether the operand may matter in a box, which holds a point, down to −c.
+    #[inline(always)]
     fn meets(&self, region: &Bounds, c: f64) -> bool {
-        self.bounds.intersects(&if c > 0.0 { grow(region, c * self.growth) } else { *region })
+        let by = if c > 0.0 { c * self.growth } else { DVec3::ZERO };
+        // Of nowhere the least corner is beyond everything.
+        self.bounds.min.cmple(region.max + by).all() && self.bounds.max.cmpge(region.min - by).all()
     }
 }
 
