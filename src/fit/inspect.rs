@@ -161,9 +161,10 @@ impl Deviations {
     }
 
     /// How many deviations are in each of `bins` parts of the range from −`reach` to `reach`; those
-    /// beyond are counted at the ends. Nothing for no bins.
+    /// beyond are counted at the ends. Nothing for no bins; at most a million.
     #[must_use]
     pub fn histogram(&self, reach: f64, bins: usize) -> Vec<usize> {
+        let bins = bins.min(1_000_000);
         let mut counts = vec![0; bins];
         if bins > 0 {
             for d in &self.signed {

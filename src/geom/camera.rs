@@ -13,6 +13,7 @@
 
 use glam::DVec3;
 
+use super::unit;
 use crate::Bounds;
 use crate::{Angle, deg, rad};
 use rvachev_field::check::SMALLEST_LENGTH;
@@ -252,12 +253,6 @@ impl Camera {
             _ => Ok(()),
         }
     }
-}
-
-/// `v` at length 1, without overflow or underflow on the way; NaN for 0.
-fn unit(v: DVec3) -> DVec3 {
-    let v = v / v.abs().max_element();
-    v / v.length()
 }
 
 /// The rays of one picture, with all that they share computed once.

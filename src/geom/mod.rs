@@ -18,6 +18,7 @@ mod quad_mesh;
 mod range_image;
 mod thin_report;
 mod transfer;
+mod unit;
 mod view;
 
 pub use camera::{Camera, CameraError, Projection, Rays};
@@ -35,4 +36,5 @@ pub use quad_mesh::{Corner, QuadMesh};
 pub use range_image::{Coordinates, Noise, RangeImage, RangeImageError};
 pub use thin_report::{ThinPlace, ThinReport};
 pub(crate) use transfer::{to_byte, to_linear};
+pub(crate) use unit::unit;
 pub use view::{Intrinsics, View};

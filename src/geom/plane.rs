@@ -10,6 +10,8 @@
 
 use glam::{DVec2, DVec3};
 
+use super::unit;
+
 /// A plane, with an origin and two axes at right angles.
 ///
 /// ```
@@ -52,8 +54,7 @@ impl Plane {
     /// length; one that is 0 or not finite makes a plane that no solid can be sliced by.
     #[must_use]
     pub fn new(origin: impl Into<DVec3>, normal: impl Into<DVec3>) -> Plane {
-        let normal = normal.into();
-        let normal = (normal / normal.abs().max_element()).normalize();
+        let normal = unit(normal.into());
         let up = if normal.z.abs() > 1.0 - 1e-12 { DVec3::Y } else { DVec3::Z };
         let u = up.cross(normal).normalize();
         Plane { origin: origin.into(), u, v: normal.cross(u) }

@@ -9,6 +9,9 @@ use crate::geom::{label, legend};
 use crate::{Camera, Image, Mesh, MeshSolid, RenderSettings, Run, Solid};
 use rvachev_num::figures;
 
+/// The most ranges of a histogram.
+const MOST_RANGES: usize = 1_000_000;
+
 /// How thick a solid is, by the triangles of its mesh:
 /// [`Solid::thickness`](crate::Solid::thickness).
 #[derive(Clone, Debug)]
@@ -66,9 +69,10 @@ impl ThicknessReport {
     }
 
     /// How much of the surface is how thick: so many ranges of one width, from 0 to the largest
-    /// thickness that is finite.
+    /// thickness that is finite; at most a million ranges.
     #[must_use]
     pub fn histogram(&self, ranges: usize) -> Vec<ThicknessBin> {
+        let ranges = ranges.min(MOST_RANGES);
         let finite = self.thicknesses.iter().filter(|thickness| thickness.is_finite());
         let largest = finite.fold(0.0, |largest: f64, thickness| largest.max(*thickness));
         let width = largest / ranges as f64;
@@ -85,7 +89,8 @@ impl ThicknessReport {
     }
 
     /// The mesh in colours: from red at thicknesses of `thin` and less, by yellow and green, to
-    /// blue at those of `thick` and more.
+    /// blue at those of `thick` and more. In place of [`mesh`](Self::mesh) another one, of other
+    /// triangles, stays as it is.
     #[must_use]
     pub fn colored(&self, thin: f64, thick: f64) -> Mesh {
         let color = |thickness: &f64| {
@@ -94,7 +99,7 @@ impl ThicknessReport {
             [[r, g, b, 255]; 3]
         };
         let colors = self.thicknesses.iter().map(color).collect();
-        self.mesh.clone().with_corner_colors(colors).unwrap_or_else(|_| unreachable!("three for each triangle"))
+        self.mesh.clone().with_corner_colors(colors).unwrap_or_else(|_| self.mesh.clone())
     }
 
     /// A picture of the mesh in the colours of [`colored`](Self::colored) from the first to the

@@ -6,6 +6,7 @@ use super::inside::{is_inside, joint};
 use super::nearest::nearest;
 use crate::distance::{compiled, surface_of};
 use crate::eval::{Care, Hit, Owner, Program, Region, first_hit};
+use crate::geom::unit;
 use crate::{Bounds, Interval, Solid, SolidError};
 
 impl Solid {
@@ -133,8 +134,8 @@ impl Solid {
     /// ```
     pub fn raycast(&self, origin: impl Into<DVec3>, direction: impl Into<DVec3>) -> Result<Option<Hit>, SolidError> {
         let programs = compiled(self)?;
-        let (origin, direction) = (origin.into(), direction.into().normalize_or_zero());
-        if direction == DVec3::ZERO || !origin.is_finite() {
+        let (origin, direction) = (origin.into(), unit(direction.into()));
+        if !direction.is_finite() || !origin.is_finite() {
             return Ok(None);
         }
         let whole = [joint(&programs, origin), f64::INFINITY];

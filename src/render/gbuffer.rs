@@ -72,7 +72,8 @@ impl Window {
     /// The ray of the pixel in column `x` and row `y` of the window.
     #[inline(always)]
     pub(super) fn ray(&self, rays: &Rays, x: u32, y: u32) -> (DVec3, DVec3) {
-        rays.ray(f64::from(self.left + x) + self.within.0, f64::from(self.top + y) + self.within.1)
+        let (left, top) = (f64::from(self.left) + f64::from(x), f64::from(self.top) + f64::from(y));
+        rays.ray(left + self.within.0, top + self.within.1)
     }
 }
 

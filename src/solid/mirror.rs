@@ -4,10 +4,11 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::Solid;
 use crate::RFunction;
+use crate::geom::unit;
 
 impl Solid {
-    /// The reflection in the plane of all points p with `normal·p = offset`, for a unit
-    /// normal: the mirror image alone. With its image beside it: [`mirrored`](Solid::mirrored).
+    /// The reflection in the plane of all points p with `n·p = offset`, where n is the
+    /// unit vector along `normal`: the mirror image alone. With its image beside it: [`mirrored`](Solid::mirrored).
     ///
     /// ```
     /// use rvachev::Solid;
@@ -20,9 +21,8 @@ impl Solid {
     /// ```
     #[must_use]
     pub fn reflect(&self, normal: impl Into<DVec3>, offset: f64) -> Solid {
-        // A normal of another length would not reflect; one of no direction is NaN, which is
-        // told when the solid is compiled.
-        let n = normal.into().normalize();
+        // One of no direction is NaN, which is told when the solid is compiled.
+        let n = unit(normal.into());
         let matrix = DMat3::IDENTITY - 2.0 * DMat3::from_cols(n * n.x, n * n.y, n * n.z);
         let forward = DAffine3::from_mat3_translation(matrix, 2.0 * offset * n);
         self.affine_as("reflect", forward)
@@ -47,7 +47,7 @@ impl Solid {
     }
 
     /// The solid together with its mirror image in the plane of all points p with
-    /// `normal·p = offset`, for a unit normal: their union by the maximum. The image alone:
+    /// `n·p = offset`, where n is the unit vector along `normal`: their union by the maximum. The image alone:
     /// [`reflect`](Solid::reflect).
     ///
     #[doc = picture!("mirrored" = "docs/gallery/mirrored.png")]

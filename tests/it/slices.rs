@@ -250,6 +250,21 @@ fn a_stack_of_slices_is_the_slices() {
     assert!(part.slices(&heights, &ContourSettings::default(), &run).is_err());
 }
 
+/// A plane far away changes nothing on the others.
+#[test]
+fn far_planes_of_a_stack_are_empty() {
+    let part = Solid::cuboid([4.0, 4.0, 2.0]) - Solid::cylinder(1.0, 4.0);
+    let area = |heights: &[f64]| {
+        let layers = part.slices(heights, &ContourSettings::default(), &Run::default()).unwrap();
+        layers.iter().map(Contours::area).collect::<Vec<_>>()
+    };
+    let own = area(&[0.0])[0];
+    for far in [-1e13, -1e9, 1e5, 1e200, f64::MAX] {
+        assert_eq!(area(&[far, 0.0]), [0.0, own], "{far}");
+        assert_eq!(area(&[far]), [0.0], "{far}");
+    }
+}
+
 #[test]
 fn slices_of_lengths_have_all_contours() {
     let shell = (Solid::cuboid([20.0, 14.0, 8.0]) | Solid::cylinder(5.0, 14.0)).shell(1.0);

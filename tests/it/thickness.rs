@@ -1,7 +1,7 @@
 //! The thickness of solids, against closed forms.
 
 use glam::DVec3;
-use rvachev::{CellSize, MeshSettings, Run, Solid, ThicknessReport, deg};
+use rvachev::{CellSize, Mesh, MeshSettings, Run, Solid, ThicknessReport, deg};
 
 fn thickness(solid: &Solid, cells: u32) -> ThicknessReport {
     let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
@@ -77,6 +77,11 @@ fn reports_are_shown_as_text_and_as_colours() {
     assert_eq!(colors.len(), report.thicknesses().len());
     let flat = (0..colors.len()).filter(|t| (report.thicknesses()[*t] - 1.0).abs() < 0.01);
     assert!(flat.clone().count() > 100 && flat.into_iter().all(|t| colors[t][0][0] > 100 && colors[t][0][2] == 0));
+    // Whatever is asked for.
+    assert_eq!(report.histogram(usize::MAX).len(), 1_000_000);
+    let mut other = report.clone();
+    other.mesh = Mesh::default();
+    assert!(other.colored(0.5, 2.0).triangles().is_empty());
     let nothing = thickness(&(Solid::sphere(1.0) & Solid::sphere(1.0).translate([5.0, 0.0, 0.0])), 8);
     assert_eq!((nothing.least, nothing.share_below(1.0)), (f64::INFINITY, 0.0));
     assert_eq!(nothing.to_string(), "no part of the surface faces another");

@@ -118,15 +118,20 @@ impl Solid {
             return Err(setting("heights", height, "finite"));
         }
         let programs = compiled_with(self, &to_compile)?;
-        let (low, region) = match heights.iter().copied().reduce(f64::min) {
-            Some(low) => (low, seen(&self.finite_bounds()?, &Plane::xy(low))),
-            None => return Ok(Vec::new()),
-        };
-        let mut order: Vec<usize> = (0..heights.len()).collect();
+        let bounds = self.finite_bounds()?;
+        // Nothing is far from the solid, and rounding is in proportion to how far planes are.
+        let near = bounds.inflate(bounds.longest_side());
+        let is_near = |height: f64| (near.min.z..=near.max.z).contains(&height);
+        let mut order: Vec<usize> = (0..heights.len()).filter(|number| is_near(heights[*number])).collect();
         order.sort_by(|a, b| heights[*a].total_cmp(&heights[*b]));
+        let mut contours = vec![Contours::default(); heights.len()];
+        let Some(low) = order.first().map(|first| heights[*first]) else {
+            run.report(1.0);
+            return Ok(contours);
+        };
+        let region = seen(&bounds, &Plane::xy(low));
         let sorted: Vec<f64> = order.iter().map(|number| heights[*number] - low).collect();
         let found = stack(&programs.surface, &Plane::xy(low), &sorted, region, settings, &to_slice)?;
-        let mut contours = vec![Contours::default(); heights.len()];
         for (number, own) in order.into_iter().zip(found) {
             contours[number] = own;
         }
