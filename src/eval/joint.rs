@@ -20,10 +20,11 @@ const MANY: usize = 64;
 /// Values of less than this part of those about them are 0 but for rounding.
 const LEVEL: f64 = 0.01;
 
-/// Whether a ray leaves the solid by a hit into a face that operands share.
+/// Whether a ray leaves the solid by a hit into a face that operands share; at the end of that face
+/// the normal may be across the ray.
 pub(super) fn runs_on(ray: &Ray<'_>, hit: &Hit) -> bool {
     let small = ray.small();
-    ray.value(hit.distance - 4.0 * small) > 0.0 && ray.value(hit.distance + 4.0 * small) > -LEVEL * small
+    hit.normal.dot(ray.direction) >= 0.0 && ray.value(hit.distance + 4.0 * small) > -LEVEL * small
 }
 
 /// The first crossing, given that which does not know of joints.

@@ -26,6 +26,9 @@ use super::probe::{OFF, is_beyond};
 use super::samples::cell_of;
 use crate::mesh::feature::{INSET, Segment, Slope};
 
+/// The farthest that the vertex in the middle of a round cell may be off the surface, in cells.
+const ROUND: f32 = 1.5 * OFF;
+
 /// A cell whose normals differ as those of a crease do.
 pub(super) struct Spread<'a> {
     /// Its number in the block.
@@ -98,9 +101,9 @@ impl Spreads {
             Some((at.clamp(low + INSET, low + (1.0 - INSET)), normal))
         };
         let tops: Vec<Option<(Vec3A, Vec3A)>> = cells.iter().enumerate().map(top).collect();
-        // What bulges out of its cell is off the surface within.
+        // What bulges out of its cell is off the surface within: a little, or there are creases.
         let points: Vec<Vec3A> = tops.iter().flatten().map(|(at, _)| *at).collect();
-        let mut off = ask(&points).into_iter().map(|slope| is_beyond(&slope, OFF * step));
+        let mut off = ask(&points).into_iter().map(|slope| is_beyond(&slope, ROUND * step));
         let mut tops = tops.into_iter().map(|top| top.filter(|_| !off.next().unwrap_or(false)));
         let (mut segments, mut places) = (&mut segments[..], &places[..]);
         for (number, middle) in &*cells {
