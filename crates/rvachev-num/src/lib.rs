@@ -33,7 +33,7 @@ pub use angle::{Angle, deg, rad, turns};
 pub use bounds::{Bounds, column_times};
 pub use dual::Dual;
 pub use figures::{figures, figures_beside};
-pub use interval::Interval;
+pub use interval::{Interval, least, most};
 pub use jet::Jet;
 pub use monotone::{Monotone, Monotone3, OfOne};
 pub use norm::{Euclid, Norm, NormKind, Powers};

@@ -11,6 +11,7 @@ use fidget::context::{BinaryOpcode, UnaryOpcode};
 use super::arithmetic::Arithmetic;
 use super::sure::Sure;
 use crate::{BOXES, Interval};
+use rvachev_num::{least, most};
 
 /// The ranges of one value in all boxes.
 #[derive(Clone, Copy)]
@@ -53,16 +54,6 @@ impl Many {
 #[inline(always)]
 fn step(x: f64) -> f64 {
     x.abs() * f64::EPSILON + Interval::TINY
-}
-
-#[inline(always)]
-fn least(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn most(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 /// Ends rounded outward, though not across 0 where the sign is known: roots and choices change
