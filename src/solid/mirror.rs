@@ -22,7 +22,8 @@ impl Solid {
     #[must_use]
     pub fn reflect(&self, normal: impl Into<DVec3>, offset: f64) -> Solid {
         // One of no direction is NaN, which is told when the solid is compiled.
-        let n = unit(normal.into());
+        let normal = normal.into();
+        let n = normal.try_normalize().unwrap_or_else(|| unit(normal));
         let matrix = DMat3::IDENTITY - 2.0 * DMat3::from_cols(n * n.x, n * n.y, n * n.z);
         let forward = DAffine3::from_mat3_translation(matrix, 2.0 * offset * n);
         self.affine_as("reflect", forward)
