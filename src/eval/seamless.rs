@@ -1,14 +1,14 @@
 //! Operands that meet without a gap.
 //!
 //! ```text
-//!     +-------+-------+      Two boxes side by side: their ranges contain 0 all about the face that they share, so
-//!     |   a   |   b   |      that a gap, or a wall where they are cut away, may be there for all that these tell.
-//!     +-------+-------+      But a + b, their slopes made equally long, is 0 throughout: where a is outside b is not.
+//!     +-----+-----+   Two boxes side by side: all about the face that they share ranges contain 0,
+//!     |  a  |  b  |   so that a gap may be there, or a wall where they are cut away. But a + b,
+//!     +-----+-----+   their slopes made equally long, is 0: where a is outside b is not.
 //! ```
 //!
 //! Of each two faces it is seen by values and ranges of slopes which pairs of signs they cannot
 //! have together. The region is seamless where all signs that are left make the whole inside, or
-//! all outside.
+//! all outside. Slopes tell nothing of values that jump, or come of a search.
 
 use super::program::{Kind, Program};
 use super::scene::Instance;
@@ -22,7 +22,7 @@ const MANY: usize = 8;
 const ROUNDING: f64 = 1e-12;
 
 /// One of the numbers of which the least has the sign of a leaf's value, in a region: in the
-/// middle, its slopes throughout, and a bound of their length.
+/// middle, its slopes throughout, and a bound of them.
 struct Face {
     leaf: u32,
     value: f64,
@@ -59,7 +59,7 @@ impl Program {
 
     /// The faces of all leaves that may have either sign in a region; none if these are many.
     fn faces(&self, region: &Bounds) -> Option<Vec<Face>> {
-        let centre = region.center();
+        let (centre, size, scale) = (region.center(), region.size(), scale(region));
         let [middle, all] = [Bounds::new(centre, centre), *region].map(|part| {
             let p = Dual::point(Zone::of_bounds(&part).hull());
             (p, self.frame_points(p))
@@ -75,17 +75,18 @@ impl Program {
                 let Instance { field, placement, .. } = self.instance(leaf);
                 if placement.shift != 0.0 { vec![self.leaf(leaf, p)] } else { field.faces(placement.apply(p)) }
             };
-            let start = faces.len();
             for (middle, all) in std::iter::zip(of(&middle), of(&all)) {
-                let steepest = all.d.map(Interval::magnitude).into_iter().fold(0.0, f64::max);
-                let is_far_within = all.v.lo() > 0.0;
-                if !is_far_within {
+                let slopes = all.d.map(Interval::magnitude);
+                let steepest = slopes.into_iter().fold(0.0, f64::max);
+                // What jumps changes by more than its slopes tell: they are taken for without bound.
+                let change = slopes[0] * size.x + slopes[1] * size.y + slopes[2] * size.z;
+                let is_told =
+                    self.instance(leaf).field.is_steady() && all.v.width() <= change + ROUNDING * scale * steepest;
+                let steepest = if is_told { steepest } else { f64::INFINITY };
+                let is_within = all.v.lo() > 0.0;
+                if !is_within {
                     faces.push(Face { leaf, value: middle.v.mid(), slopes: all.d, steepest });
                 }
-            }
-            if faces.len() == start {
-                // All of the region is within the leaf.
-                faces.push(Face { leaf, value: 1.0, slopes: [Interval::ZERO; 3], steepest: 0.0 });
             }
             if faces.len() > MANY {
                 return None;
@@ -95,16 +96,17 @@ impl Program {
     }
 }
 
+/// Lengths about a region, which rounding is in proportion to.
+fn scale(region: &Bounds) -> f64 {
+    region.min.abs().max(region.max.abs()).max_element()
+}
+
 /// The faces, by their places in a list, and the signs that they cannot have together within a
 /// region, 1 for within, by more than rounding.
 fn contrary_pairs(faces: &[Face], region: &Bounds) -> Vec<([usize; 2], [u32; 2])> {
-    let (centre, half) = (region.center(), 0.5 * region.size());
-    let scale = centre.abs().max_element() + half.max_element();
+    let (half, scale) = (0.5 * region.size(), scale(region));
     let mut pairs = Vec::new();
     for (j, b) in faces.iter().enumerate() {
-        if b.steepest == 0.0 {
-            pairs.push(([j, j], [0, 0]));
-        }
         for (i, a) in faces[..j].iter().enumerate() {
             let factor = a.steepest / b.steepest;
             let rounding = ROUNDING * scale * a.steepest;
@@ -131,8 +133,11 @@ fn contrary_pairs(faces: &[Face], region: &Bounds) -> Vec<([usize; 2], [u32; 2])
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use crate::distance::compiled;
-    use crate::{Bounds, Solid, rad};
+    use crate::field::{Field, Real};
+    use crate::{Bounds, ParamError, Solid, rad};
 
     #[test]
     fn what_meets_is_told_from_what_is_apart() {
@@ -164,6 +169,73 @@ mod tests {
             assert!(is_seamless(&wall(0.0), at) && is_seamless(&plug(&peg), [0.5, 0.01, 0.02]));
             assert!(!is_seamless(&plug(&Solid::cylinder(0.5 - 1e-9, 1.0)), [0.5, 0.01, 0.02]));
             assert!(!is_seamless(&block, at) && !is_seamless(&tower(0.0), [1.0, 0.02, 0.503]));
+        }
+    }
+
+    /// A ball with a plateau of 0 around it.
+    #[derive(Clone, Copy, Debug)]
+    struct Plateau;
+
+    /// Inside on one side of a plane, by values that jump there; elsewhere flat, or steep.
+    #[derive(Clone, Copy, Debug)]
+    struct Jump(f64);
+
+    macro_rules! field {
+        ($name:ident, $text:literal, |$own:ident, $p:ident| $value:expr) => {
+            impl Field for $name {
+                fn name(&self) -> &'static str {
+                    $text
+                }
+
+                fn eval<R: Real>(&self, $p: [R; 3]) -> R {
+                    let $own = self;
+                    $value
+                }
+
+                fn bounds(&self) -> Bounds {
+                    Bounds::from_center(DVec3::ZERO, DVec3::splat(4.0))
+                }
+
+                fn check(&self) -> Result<(), ParamError> {
+                    Ok(())
+                }
+            }
+        };
+    }
+
+    field!(Plateau, "plateau", |_own, p| {
+        let [x, y, z] = p;
+        (x.lift(1.0) - (x * x + y * y + z * z)).max(x.lift(0.0))
+    });
+    field!(Jump, "jump", |own, p| {
+        let [x, _, _] = p;
+        let rise = x * own.0;
+        x.select(rise + 1.0, rise - 1.0)
+    });
+
+    #[test]
+    fn what_is_flat_or_jumps_is_not_taken_for_inside() {
+        let wall = Solid::cuboid([0.01, 3.0, 3.0]).translate([1.5, 0.0, 0.0]);
+        let is_seamless = |solid: &Solid, at: [f64; 3]| {
+            compiled(solid).unwrap().surface.is_seamless(&Bounds::from_center(at, DVec3::splat(0.1)))
+        };
+        let plateau = Solid::new(Plateau);
+        for solid in [&wall | &plateau, &wall - &plateau, &plateau | &wall] {
+            assert!(!is_seamless(&solid, [1.5, 0.1, 0.2]), "{solid}");
+        }
+        // Distances from a surface that is measured are found by a search.
+        let half = Solid::cuboid([1.0, 2.0, 1.0]);
+        let measured = (half.translate([-0.5, 0.0, 0.0]) | half.translate([0.5, 0.0, 0.0])).offset(-0.25);
+        let tower = &measured | Solid::cuboid([1.5, 1.5, 1.0]).translate([0.0, 0.0, 0.75]);
+        let at = [0.22, 0.31, 0.253];
+        assert!(!is_seamless(&tower, at) && is_seamless(&(&measured | !&measured), at));
+        for slope in [0.0, 1.0, -8.0] {
+            let jump = Solid::new(Jump(slope));
+            for solid in [jump.clone(), &jump | &wall, !&jump, &jump - &wall] {
+                assert!(!is_seamless(&solid, [0.003, 0.1, 0.2]), "{solid}");
+            }
+            // Whatever it is, nothing is between it and its complement.
+            assert!(is_seamless(&(&jump | !&jump), [0.003, 0.1, 0.2]));
         }
     }
 }

@@ -4,8 +4,11 @@ use glam::DVec3;
 
 /// A vector at length 1, without overflow or underflow on the way; NaN for one of length 0.
 pub(crate) fn unit(v: DVec3) -> DVec3 {
-    let v = v / v.abs().max_element();
-    v / v.length()
+    /// Squares of lengths between this and its inverse are exact but for rounding.
+    const LEAST: f64 = 1e-200;
+    let square = v.length_squared();
+    let v = if square > LEAST && square < 1.0 / LEAST { v } else { v / v.abs().max_element() };
+    v.normalize()
 }
 
 #[cfg(test)]
@@ -17,11 +20,13 @@ mod tests {
     #[test]
     fn vectors_of_any_length_tell_directions() {
         let ball = Solid::sphere(1.0).translate([3.0, 0.0, 0.0]);
-        for length in [1e-200, 1e-3, 1.0, 1e200] {
+        for length in [1e-200, 1e-161, 1e-155, 1e-3, 1.0, 1e154, 1e200] {
             let along = DVec3::X * length;
             assert_eq!(ball.raycast([0.0; 3], along).unwrap().map(|hit| hit.distance), Some(2.0), "{length}");
-            assert!(ball.reflect(along, 0.0).contains([-3.0, 0.0, 0.0]).unwrap(), "{length}");
-            assert!(ball.mirrored(along, 0.0).contains([-3.0, 0.0, 0.0]).unwrap(), "{length}");
+            for other in [ball.reflect(along, 0.0), ball.mirrored(along, 0.0)] {
+                assert!((other.value([-3.0, 0.0, 0.0]).unwrap() - 1.0).abs() < 1e-12, "{length}");
+                assert!(other.value([-4.0, 0.0, 0.0]).unwrap().abs() < 1e-12, "{length}");
+            }
         }
     }
 }

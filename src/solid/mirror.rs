@@ -7,8 +7,9 @@ use crate::RFunction;
 use crate::geom::unit;
 
 impl Solid {
-    /// The reflection in the plane of all points p with `n·p = offset`, where n is the
-    /// unit vector along `normal`: the mirror image alone. With its image beside it: [`mirrored`](Solid::mirrored).
+    /// The reflection in the plane of all points p with `n·p = offset`, where n is the unit vector
+    /// along `normal`: the mirror image alone. With its image beside it:
+    /// [`mirrored`](Solid::mirrored).
     ///
     /// ```
     /// use rvachev::Solid;
@@ -22,8 +23,7 @@ impl Solid {
     #[must_use]
     pub fn reflect(&self, normal: impl Into<DVec3>, offset: f64) -> Solid {
         // One of no direction is NaN, which is told when the solid is compiled.
-        let normal = normal.into();
-        let n = normal.try_normalize().unwrap_or_else(|| unit(normal));
+        let n = unit(normal.into());
         let matrix = DMat3::IDENTITY - 2.0 * DMat3::from_cols(n * n.x, n * n.y, n * n.z);
         let forward = DAffine3::from_mat3_translation(matrix, 2.0 * offset * n);
         self.affine_as("reflect", forward)
@@ -48,8 +48,8 @@ impl Solid {
     }
 
     /// The solid together with its mirror image in the plane of all points p with
-    /// `n·p = offset`, where n is the unit vector along `normal`: their union by the maximum. The image alone:
-    /// [`reflect`](Solid::reflect).
+    /// `n·p = offset`, where n is the unit vector along `normal`: their union by the maximum. The
+    /// image alone: [`reflect`](Solid::reflect).
     ///
     #[doc = picture!("mirrored" = "docs/gallery/mirrored.png")]
     ///

@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Blend, ContourSettings, Contours, Plane, PlaneBounds, Polyline, Profile, RFunction, Run, Side, SliceSettings,
-    Solid,
+    Blend, CancelToken, ContourSettings, Contours, Plane, PlaneBounds, Polyline, Profile, RFunction, Run, Side,
+    SliceSettings, Solid,
+    error::RenderError,
     io::{write_dxf, write_svg},
     layers::Isolines,
 };
@@ -263,6 +264,16 @@ fn far_planes_of_a_stack_are_empty() {
         assert_eq!(area(&[far, 0.0]), [0.0, own], "{far}");
         assert_eq!(area(&[far]), [0.0], "{far}");
     }
+    let cancel = CancelToken::new();
+    cancel.cancel();
+    let run = Run { cancel, ..Run::default() };
+    for heights in [&[][..], &[0.0], &[1e9]] {
+        let cancelled = part.slices(heights, &ContourSettings::default(), &run);
+        assert!(matches!(cancelled, Err(RenderError::Cancelled(_))), "{heights:?}: {cancelled:?}");
+    }
+    // No planes cut whatever there is.
+    let half = Solid::half_space([0.0, 0.0, 1.0], 0.0);
+    assert_eq!(half.slices(&[], &ContourSettings::default(), &Run::default()).unwrap(), []);
 }
 
 #[test]

@@ -277,8 +277,8 @@ fn what_deformations_make_thin_is_told() {
     }
 }
 
-/// Parts that meet in a face: it is within the mesh, wherever it lies between the nodes, and nothing
-/// may be lost there.
+/// Parts that meet in a face: it is within the mesh, wherever it lies between the nodes, and
+/// nothing may be lost there.
 #[test]
 fn joints_are_within_the_mesh() {
     let block = Solid::cuboid([40.0, 40.0, 16.0]);

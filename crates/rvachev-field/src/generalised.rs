@@ -144,6 +144,8 @@ impl GeneralisedSuperquadric {
 struct Gauge([f64; 3]);
 
 impl Monotone3 for Gauge {
+    const ITERATES: bool = true;
+
     #[inline(always)]
     fn value<R: Real>(&self, x: R, y: R, z: R) -> R {
         let [n1, n2, n3] = self.0;

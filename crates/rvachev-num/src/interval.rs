@@ -335,7 +335,7 @@ impl Real for Interval {
     #[inline(never)]
     fn pow(self, p: f64) -> Interval {
         let a = self.abs();
-        let most = if a.hi == 0.0 { 0.0 } else { f64::INFINITY };
+        let most = if a.hi == 0.0 && p > 0.0 { 0.0 } else { f64::INFINITY };
         Interval::library_within(a.lo.powf(p), a.hi.powf(p), 0.0, most)
     }
 
@@ -398,8 +398,7 @@ impl Real for Interval {
         let wide =
             if let Norm::P { .. } | Norm::Steep { .. } = norm { Interval::library(wide.lo, wide.hi) } else { wide };
         // What underflows is no less than either.
-        let most = if a.hi.max(b.hi) == 0.0 { 0.0 } else { wide.hi.max(a.hi).max(b.hi) };
-        Interval { lo: wide.lo.max(0.0), hi: most }
+        Interval { lo: wide.lo.max(0.0), hi: wide.hi.max(a.hi).max(b.hi) }
     }
 
     #[inline(always)]
@@ -460,6 +459,16 @@ impl Real for Interval {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn powers_of_0_have_their_ends_in_order() {
+        for p in [-2.0, -0.5, 0.0, 0.5, 2.0] {
+            for x in [Interval::ZERO, Interval::new(0.0, 2.0), Interval::new(-1.0, 0.0), Interval::new(1.0, 2.0)] {
+                let power = x.pow(p);
+                assert!(power.lo <= power.hi, "{x:?} to {p}: {power:?}");
+            }
+        }
+    }
     use crate::Dual;
 
     #[test]

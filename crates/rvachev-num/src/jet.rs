@@ -355,7 +355,8 @@ impl Real for Jet {
     fn monotone3<M: Monotone3>(self, y: Jet, z: Jet, function: &M) -> Jet {
         let (v, [a, b, c]) = function.parts(self.v, y.v, z.v);
         let both = self.chain2(&y, v, [a, b], [ZERO; 3]);
-        Jet { h: function.value(self, y, z).h, ..both.chain2(&z, v, [Interval::point(1.0), c], [ZERO; 3]) }
+        let h = if M::ITERATES { [Interval::ALL; 6] } else { function.value(self, y, z).h };
+        Jet { h, ..both.chain2(&z, v, [Interval::point(1.0), c], [ZERO; 3]) }
     }
 }
 
@@ -390,7 +391,35 @@ fn norm_bends([a, b]: [Interval; 2], v: Interval, [alpha, beta]: [Interval; 2], 
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
     use super::*;
+
+    /// x + 2y + 3z, by iteration or not; how often it was run.
+    struct Sum<const ITERATES: bool>(Cell<u32>);
+
+    impl<const ITERATES: bool> Monotone3 for Sum<ITERATES> {
+        const ITERATES: bool = ITERATES;
+
+        fn value<R: Real>(&self, x: R, y: R, z: R) -> R {
+            self.0.set(self.0.get() + 1);
+            x + y * 2.0 + z * 3.0
+        }
+
+        fn parts<R: Real>(&self, x: R, y: R, z: R) -> (R, [R; 3]) {
+            (x + y * 2.0 + z * 3.0, [1.0, 2.0, 3.0].map(|slope| x.lift(slope)))
+        }
+    }
+
+    #[test]
+    fn what_iterates_is_not_run_for_its_bends() {
+        let [x, y, z] = Jet::point([Interval::new(0.0, 1.0); 3]);
+        let (closed, found) = (Sum::<false>(Cell::new(0)), Sum::<true>(Cell::new(0)));
+        let (sum, other) = (x.monotone3(y, z, &closed), x.monotone3(y, z, &found));
+        assert_eq!((closed.0.get(), found.0.get()), (1, 0));
+        assert_eq!((sum.d, sum.bend(0, 1), other.bend(0, 1)), (other.d, ZERO, Interval::ALL));
+        assert!(sum.d[2].contains(3.0) && sum.d[2].width() < 1e-12);
+    }
 
     /// x from −1 to 1, y about 1 and nothing.
     fn variables() -> [Jet; 3] {

@@ -21,6 +21,10 @@ pub trait Monotone {
 /// [`Real::monotone3`] evaluates it in the way that suits the number: a range is two endpoint
 /// evaluations, however often the formula names its arguments, and a gradient is three slopes.
 pub trait Monotone3 {
+    /// Whether the value is found by iteration: ranges of second derivatives of all its steps take
+    /// long and tell nothing, so none are asked for.
+    const ITERATES: bool = false;
+
     /// The function's value. In `f64` it must be within 10⁻¹³ of the true one, relative to the
     /// value and the largest argument.
     fn value<R: Real>(&self, x: R, y: R, z: R) -> R;

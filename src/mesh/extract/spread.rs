@@ -101,7 +101,7 @@ impl Spreads {
             Some((at.clamp(low + INSET, low + (1.0 - INSET)), normal))
         };
         let tops: Vec<Option<(Vec3A, Vec3A)>> = cells.iter().enumerate().map(top).collect();
-        // What bulges out of its cell is off the surface within: a little, or there are creases.
+        // Held within its cell it is off the surface: a little, or there are creases.
         let points: Vec<Vec3A> = tops.iter().flatten().map(|(at, _)| *at).collect();
         let mut off = ask(&points).into_iter().map(|slope| is_beyond(&slope, ROUND * step));
         let mut tops = tops.into_iter().map(|top| top.filter(|_| !off.next().unwrap_or(false)));

@@ -117,7 +117,11 @@ impl Solid {
         if let Some(height) = heights.iter().find(|height| !height.is_finite()) {
             return Err(setting("heights", height, "finite"));
         }
+        run.check()?;
         let programs = compiled_with(self, &to_compile)?;
+        if heights.is_empty() {
+            return Ok(Vec::new());
+        }
         let bounds = self.finite_bounds()?;
         // Nothing is far from the solid, and rounding is in proportion to how far planes are.
         let near = bounds.inflate(bounds.longest_side());
