@@ -10,7 +10,7 @@ use super::mend::mend;
 use super::quilt::{Care, GROSS, Quilt};
 use super::sheets::cover;
 use crate::error::MeshingError;
-use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, REACH, Surface, Wanted};
+use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted, reach};
 use crate::mesh::{Hidden, Slopes, Subject};
 use crate::{Bounds, Mesh, RFunction, Run, Solid, SolidError};
 use rvachev_field::Patches;
@@ -46,9 +46,6 @@ const FEW: f64 = 1e-4;
 
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;
-
-/// What is cut off beside a surface is cut off at no less than this part of its size from it.
-const BESIDE: f64 = 0.05;
 
 /// The part of the work that finding the size of cells is.
 const LOOKING: f64 = 0.05;
@@ -178,8 +175,7 @@ impl DistanceSource for FromMeshes {
 /// What of a solid is to be measured: its box, the axis along which it is a cylinder, and its size
 /// across that.
 fn extent(programs: &Compiled, wanted: &Wanted<'_>) -> (Bounds, Option<usize>, f64) {
-    let beside = if programs.bounds.is_finite() { BESIDE * programs.bounds.longest_side() } else { 0.0 };
-    let reach = beside.max(REACH * wanted.length);
+    let reach = reach(wanted.length, programs.bounds.longest_side());
     let bounds = programs.bounds.intersection(&wanted.region.inflate(reach));
     let flat = programs.flat_axis();
     let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);

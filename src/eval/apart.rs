@@ -14,7 +14,7 @@ use super::depth::is_deeper;
 use super::exact::Exactness;
 use super::fill::FARTHEST;
 use super::nothing::Nothing;
-use super::source::{CompileError, DistanceSource, Measured, Surface, Wanted, surface};
+use super::source::{CompileError, DistanceSource, Measured, Surface, Wanted, reach, surface};
 use super::tiles::Tiles;
 use crate::solid::{BALL_OF_LEGS, Length, Node, Operation};
 use crate::{Blend, Bounds, Cancelled, Run, Solid};
@@ -69,8 +69,10 @@ fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> Vec<&'a Solid> {
     match solid.node() {
         Node::Length { length: Length::Level(_), .. } => Vec::new(),
         Node::Length { .. } if exact.is_gone(solid) => Vec::new(),
-        Node::Length { operand, length, ball, .. } if !exact.is_closed(solid) || length.inwards() > 0.0 => {
-            [operand].into_iter().chain(ball).collect()
+        Node::Length { operand, length, ball, about, .. } if !exact.is_closed(solid) || length.inwards() > 0.0 => {
+            // Where a blend is depends on how large its operands are.
+            let blended = about.iter().flat_map(|_| operand.node().operands());
+            blended.chain([operand]).chain(ball).collect()
         }
         Node::Blend { operands, ball: Some(ball), .. } => operands.iter().chain([ball]).collect(),
         Node::Swept { profile, ball: Some(_), .. } => vec![&profile.0],
@@ -97,13 +99,14 @@ pub(super) fn measure(
             let is_gone = length.inwards() > 0.0 && kept(ball).is_none_or(|programs| programs.bounds.is_empty());
             Measured { field, accuracy, is_gone, sides: Vec::new() }
         }
-        Node::Length { operand, length, .. } => {
+        Node::Length { operand, length, about, .. } => {
             let inwards = length.inwards();
             let Some(programs) = kept(operand) else { return Ok(()) };
             let (field, accuracy) = match exact.is_closed(solid) {
                 true => (sign(&programs), Accuracy::default()),
                 false => {
-                    let wanted = Wanted { length: inwards.abs(), tolerance, region: &Bounds::ALL };
+                    let region = about.map_or(Bounds::ALL, |blend| region_of_ball(operand, blend, &programs.bounds));
+                    let wanted = Wanted { length: inwards.abs(), tolerance, region: &region };
                     distance(operand, &wanted, source, run)?
                 }
             };
@@ -118,7 +121,7 @@ pub(super) fn measure(
         }
         Node::Blend { operation, blend, operands, ball: Some(ball), .. } => {
             let near = Near::of(*operation, *blend, operands);
-            let region = near.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own));
+            let region = near.region();
             let wanted = Wanted { length: near.radius, tolerance, region: &region };
             // The ball's distance, and those of the operands.
             let count = if near.fades { 1 + operands.len() } else { 1 };
@@ -196,7 +199,21 @@ pub(super) struct Near {
     pub(super) around: Vec<Bounds>,
 }
 
+/// Where the ball of a blend is asked for: its own surface is found in a box that reaches a little
+/// beyond the joints of what is blended, which is within the bounds.
+fn region_of_ball(joined: &Solid, blend: Blend, bounds: &Bounds) -> Bounds {
+    let Node::Join { operation, operands, .. } = joined.node() else { return Bounds::ALL };
+    let near = Near::of(*operation, blend, operands);
+    let size = bounds.longest_side() + 2.0 * near.radius;
+    near.region().inflate(reach(near.radius, size))
+}
+
 impl Near {
+    /// A box about all joints.
+    fn region(&self) -> Bounds {
+        self.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own))
+    }
+
     pub(super) fn of(operation: Operation, blend: Blend, operands: &[Solid]) -> Near {
         let is_convex =
             |operand: &Solid| kept(operand).is_some_and(|programs| programs.surface.bend() == Some(Bend::Concave));

@@ -14,6 +14,9 @@
 //! no nearer to A; so it is the centre of a ball of U that holds x. An edge that an operand has by
 //! itself is filled beside the other operand only, and less and less so away from it.
 //!
+//! Far below the surface no value counts but as one that is below: it is held at −4r, so that a
+//! point as far from all joints costs nothing, however many fillets the operands have themselves.
+//!
 //! Intersections are the unions of complements, and so are differences. δ is how far the measured
 //! distance may be off.
 
@@ -132,7 +135,12 @@ impl Fill {
     fn height(&self, ball: f64, two: Option<Two>) -> f64 {
         let most = (ball - self.radius).min(MOST * self.radius);
         let beyond = two.map_or(0.0, |Two { distances: [a, b], .. }| (a + b - 2.0 * self.radius).max(0.0));
-        most - FADE * beyond - self.margin
+        (most - FADE * beyond - self.margin).max(self.lowest())
+    }
+
+    /// Values are held there.
+    fn lowest(&self) -> f64 {
+        -self.farthest()
     }
 
     /// The gradient of the height, from those of what it is made of.
@@ -228,18 +236,25 @@ impl AnyField for Fill {
 
     fn value(&self, p: [f64; 3]) -> f64 {
         let p = DVec3::from_array(p);
-        self.height(self.ball.value(p), self.two(p)).min(self.depth(p).0)
+        let (depth, _) = self.depth(p);
+        if depth < self.lowest() { depth } else { self.height(self.ball.value(p), self.two(p)).min(depth) }
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
         let at = DVec3::from_array(p.map(Dual::value));
-        let (ball, two, (depth, way)) = (self.ball.value(at), self.two(at), self.depth(at));
-        let height = self.height(ball, two);
-        let (value, slope) = if depth < height {
-            (depth, way)
-        } else {
-            (height, self.slope(ball, self.ball.slope(at), two, |number| self.sides[number].distance.slope(at)))
+        let (depth, way) = self.depth(at);
+        let looked = || {
+            let (ball, two) = (self.ball.value(at), self.two(at));
+            let height = self.height(ball, two);
+            if depth < height {
+                (depth, way)
+            } else if height <= self.lowest() {
+                (height, DVec3::ZERO)
+            } else {
+                (height, self.slope(ball, self.ball.slope(at), two, |number| self.sides[number].distance.slope(at)))
+            }
         };
+        let (value, slope) = if depth < self.lowest() { (depth, way) } else { looked() };
         let along = |axis: usize| (0..3).map(|i| slope[i] * p[i].d[axis]).sum();
         Dual::new(value, [along(0), along(1), along(2)])
     }
@@ -263,8 +278,9 @@ impl AnyField for Fill {
     fn range(&self, zone: &Zone) -> Interval {
         let point = Interval::point;
         let depth = self.box_depth(zone);
+        let lowest = point(self.lowest());
         if depth.hi() < 0.0 {
-            return Interval::new(f64::NEG_INFINITY, depth.hi());
+            return Interval::new(lowest.min(depth).lo(), depth.hi());
         }
         let most = (self.ball.range(zone) - point(self.radius)).min(point(MOST * self.radius));
         let fade = if self.sides.is_empty() {
@@ -280,7 +296,7 @@ impl AnyField for Fill {
             let sum = Interval::new(low.distances.iter().sum(), high.distances.iter().sum());
             (sum - point(2.0 * self.radius)).max(point(0.0)) * point(FADE)
         };
-        (most - fade - point(self.margin)).min(depth)
+        (most - fade - point(self.margin)).max(lowest).min(depth)
     }
 
     /// Towards the joint the ball is farther off and the operands are nearer. Outside of the boxes
@@ -384,17 +400,22 @@ impl AnyField for Fill {
             let [x, y, z] = [1, 2, 3].map(|k| sign * f64::from(list[k][i]));
             DVec3::new(x, y, z)
         };
-        let ball = slopes(&self.ball);
-        let sides: Vec<[Vec<f32>; 4]> = self.sides.iter().map(|side| slopes(&side.distance)).collect();
+        let local = |i: usize| DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
+        let is_far = (0..count).all(|i| self.depth(local(i)).0 < self.lowest());
+        let asked = |side: &Signed| if is_far { [(); 4].map(|()| vec![0.0; count]) } else { slopes(side) };
+        let ball = asked(&self.ball);
+        let sides: Vec<[Vec<f32>; 4]> = self.sides.iter().map(|side| asked(&side.distance)).collect();
         let [value, dx, dy, dz] = out;
         for i in 0..count {
-            let local = DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
+            let local = local(i);
             let two = self.two_of(local, |number| self.sides[number].distance.sign * f64::from(sides[number][0][i]));
             let (v, (depth, way)) = (self.ball.sign * f64::from(ball[0][i]), self.depth(local));
             let height = self.height(v, two);
             // The slopes of parts are those of the frame that the points are in.
             let (v, slope) = if depth < height {
                 (depth, DVec3::from_array(placement.pull(way.to_array())))
+            } else if height <= self.lowest() {
+                (height, DVec3::ZERO)
             } else {
                 let side = |number: usize| of(&sides[number], self.sides[number].distance.sign, i);
                 (height, self.slope(v, of(&ball, self.ball.sign, i), two, side))
@@ -416,6 +437,7 @@ impl Fill {
     fn values<E: Lane>(&self, chunk: Chunk<'_, E, 1>, band: f64) {
         let Chunk { points, placement, out: [out] } = chunk;
         let band = if placement.shift == 0.0 { band / placement.scale } else { f64::INFINITY };
+        let band = band.min(self.farthest());
         let local = |i: usize| DVec3::from_array(placement.apply([0, 1, 2].map(|axis| points[axis][i].to_f64())));
         let depths: Vec<f64> = (0..out.len()).map(|i| self.depth(local(i)).0).collect();
         let mut all = depths.clone();
@@ -424,7 +446,7 @@ impl Fill {
         let most = (MOST * self.radius).max(band + self.margin);
         let balls = open.values(&self.ball, &own, (self.radius, most));
         open.retain(&balls, |ball, i| {
-            let height = ball - self.radius - self.margin;
+            let height = (ball - self.radius - self.margin).max(self.lowest());
             all[i] = height.min(depths[i]);
             height > -band
         });

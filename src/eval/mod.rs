@@ -84,4 +84,4 @@ pub(crate) use point::limited;
 pub(crate) use ray::{Care, bracket, first_hit};
 pub(crate) use runs::Block;
 pub(crate) use rvachev_field::{Crease, Op};
-pub(crate) use source::{CompileError, DistanceSource, REACH, Surface, Wanted, surface};
+pub(crate) use source::{CompileError, DistanceSource, Surface, Wanted, reach, surface};

@@ -43,7 +43,17 @@ pub(crate) struct Wanted<'a> {
 }
 
 /// Distances are asked up to so many lengths from a region.
-pub(crate) const REACH: f64 = 2.0;
+const REACH: f64 = 2.0;
+
+/// What is cut off beside a surface is cut off at no less than this part of its size from it.
+const BESIDE: f64 = 0.05;
+
+/// How far beyond a region a surface is found for lengths that are asked for in it, of a solid of a
+/// size.
+pub(crate) fn reach(length: f64, size: f64) -> f64 {
+    let beside = if size.is_finite() { BESIDE * size } else { 0.0 };
+    beside.max(REACH * length)
+}
 
 impl Wanted<'_> {
     /// Where the surface is needed.

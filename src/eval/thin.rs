@@ -32,6 +32,21 @@ impl Program {
         self.nodes.iter().filter_map(Node::valued_by).all(|leaf| self.instance(leaf).frame == 0)
     }
 
+    /// Whether it is one convex body that is not repeated or mirrored: between two points on one
+    /// side of it there is nothing of the other, but for what of it is thinner than between them.
+    pub(crate) fn is_one_convex(&self) -> bool {
+        let mut leaves = self.nodes.iter().filter_map(Node::valued_by).map(|leaf| self.instance(leaf));
+        let first = leaves.next();
+        let is_single = |leaf: &Instance| {
+            let mut frame = self.scene.frame(leaf.frame);
+            while let Some(own) = frame.filter(|own| !own.warp.folds()) {
+                frame = self.scene.frame(own.parent);
+            }
+            frame.is_none() && leaf.field.convex()
+        };
+        leaves.next().is_none() && first.is_none_or(is_single)
+    }
+
     /// By how much the value of gentle leaves changes per length unit in a box at most: by more
     /// than 1 where they are deformed. Of others it is not told.
     pub(crate) fn slope_within(&self, region: &Bounds) -> f64 {
@@ -43,11 +58,17 @@ impl Program {
     }
 
     /// Which leaves of the solid, by their numbers, are convex and thinner than this, in length
-    /// units: holes and rods of that size may pass between samples without a change of sign.
+    /// units: holes and rods of that size may pass between samples without a change of sign. Arms of
+    /// stars, whose values tell no distances either, are thinner than half of their boxes.
     pub(crate) fn thin_leaves(&self, thickness: f64) -> Vec<bool> {
         let is_thin = |leaf: &Instance| {
             let size = leaf.field.bounds_under(&DAffine3::IDENTITY).size().min_element();
-            leaf.field.convex() && leaf.placement.scale * size + 2.0 * leaf.placement.shift < thickness
+            let parts = match (leaf.field.convex(), leaf.field.exact()) {
+                (true, _) => 1.0,
+                (false, false) => 2.0,
+                (false, true) => return false,
+            };
+            leaf.placement.scale * size + 2.0 * leaf.placement.shift < parts * thickness
         };
         self.scene.leaves.iter().map(is_thin).collect()
     }

@@ -43,6 +43,7 @@ pub(super) use self::lost::BORE;
 use self::lost::{suspected, torn_nodes};
 use self::neighbours::Neighbours;
 use self::parts::Parts;
+use self::skipped::Skips;
 pub(crate) use self::suspect::CellRows;
 use self::suspect::{Suspect, Suspicion};
 use super::Features;
@@ -75,6 +76,7 @@ mod probe;
 mod region;
 mod samples;
 mod sharp;
+mod skipped;
 mod span;
 mod special;
 mod spread;
@@ -119,7 +121,7 @@ pub(crate) trait Sampler: Sync {
     }
 
     /// Whether blocks that may have lost a feature thinner than a cell are to be counted: by what
-    /// the next three tell. By default they are not.
+    /// the next ones tell. By default they are not.
     fn watches(&self) -> bool {
         false
     }
@@ -133,6 +135,36 @@ pub(crate) trait Sampler: Sync {
     /// Whether a block, given by its first cell, may hold a leaf that passes between nodes. By
     /// default none does.
     fn is_bored(&self, _number: usize, _block: [u32; 3]) -> bool {
+        false
+    }
+
+    /// Whether the surface may pass between two nodes of a block there and back. By default it does
+    /// not.
+    fn may_skip(&self, _number: usize, _block: [u32; 3]) -> bool {
+        false
+    }
+
+    /// Adds values at points of a block, given in cells from its first node, in the order of the
+    /// points, to `out`; whether it did. It is asked right after the [`nodes`](Sampler::nodes) of
+    /// the block. The default knows of none.
+    fn values_at_hand(
+        &self,
+        _scratch: &mut Self::Scratch,
+        _number: usize,
+        _points: &[Vec3A],
+        _out: &mut Vec<f32>,
+    ) -> bool {
+        false
+    }
+
+    /// The same of values and gradients.
+    fn slopes_at_hand(
+        &self,
+        _scratch: &mut Self::Scratch,
+        _number: usize,
+        _points: &[Vec3A],
+        _out: &mut Vec<Slope>,
+    ) -> bool {
         false
     }
 
@@ -352,13 +384,15 @@ struct Worker<'a, S: Sampler> {
     values: Box<[f32; NODES]>,
     edges: Vec<EdgeRef>,
     roots: Vec<Root>,
+    skips: Skips,
 }
 
 impl<'a, S: Sampler> Worker<'a, S> {
     fn new(sampler: &'a S, lattice: &'a Lattice, features: Features) -> Self {
         let scratch = sampler.scratch();
         let values = Box::new([0.0; NODES]);
-        Worker { sampler, lattice, features, scratch, values, edges: Vec::new(), roots: Vec::new() }
+        let (edges, roots, skips) = (Vec::new(), Vec::new(), Skips::default());
+        Worker { sampler, lattice, features, scratch, values, edges, roots, skips }
     }
 
     /// Samples the blocks from number `start` on.
@@ -384,7 +418,8 @@ impl<'a, S: Sampler> Worker<'a, S> {
                 Vec::new()
             };
             why.push(if watches {
-                suspected((self.sampler, self.lattice), (number, block), (&signs, &self.values))
+                let means = (&mut self.scratch, &mut self.skips);
+                suspected((self.sampler, self.lattice), means, (number, block), (&signs, &self.values))
             } else {
                 None
             });

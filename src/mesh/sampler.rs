@@ -145,6 +145,13 @@ impl SolidSampler<'_> {
         self.kept.resize_with(self.blocks.len().div_ceil(BATCH), OnceLock::new);
     }
 
+    /// Places points of the block that was sampled last, and says which tape at hand is that block's.
+    fn place_at_hand(&self, scratch: &mut Scratch, number: usize, points: &[Vec3A]) -> Option<usize> {
+        let step = self.lattice.step() as f32;
+        place(points.iter().map(|p| step * *p), &mut scratch.single);
+        scratch.tapes.iter().rposition(|(group, _)| *group == self.groups[number])
+    }
+
     /// Ends the use of the tapes of a batch for roots.
     fn put_by(&self, batch: usize, tapes: &mut Vec<(u32, Tape)>) {
         match self.kept.get(batch) {
@@ -190,6 +197,26 @@ impl Sampler for SolidSampler<'_> {
 
     fn is_bored(&self, number: usize, block: [u32; 3]) -> bool {
         !self.thin.is_empty() && self.programs.of(number).has_leaf_of(&self.thin, &self.lattice.region(block, BLOCK))
+    }
+
+    fn may_skip(&self, number: usize, _block: [u32; 3]) -> bool {
+        self.exact.get(number) != Some(&true) && !self.programs.of(number).is_one_convex()
+    }
+
+    fn values_at_hand(&self, scratch: &mut Scratch, number: usize, points: &[Vec3A], out: &mut Vec<f32>) -> bool {
+        let Some(tape) = self.place_at_hand(scratch, number, points) else { return false };
+        let Scratch { evaluator, tapes, single: [x, y, z], .. } = scratch;
+        let from = out.len();
+        out.resize(from + points.len(), 0.0);
+        evaluator.shortest_values(&tapes[tape].1, [x, y, z], &mut out[from..]);
+        true
+    }
+
+    fn slopes_at_hand(&self, scratch: &mut Scratch, number: usize, points: &[Vec3A], out: &mut Vec<Slope>) -> bool {
+        let Some(tape) = self.place_at_hand(scratch, number, points) else { return false };
+        let Scratch { evaluator, tapes, single, slopes, .. } = scratch;
+        gradients(evaluator, &tapes[tape].1, single, slopes, out);
+        true
     }
 
     fn may_hide(&self, number: usize, block: [u32; 3], cells: &CellRows, intervals: usize) -> bool {
@@ -306,16 +333,26 @@ impl Sampler for SolidSampler<'_> {
         // The program holds in the block and nowhere else.
         let (high, step) = (Vec3A::splat(BLOCK as f32), self.lattice.step() as f32);
         place(points.iter().map(|p| step * p.clamp(Vec3A::ZERO, high)), &mut scratch.single);
-        for slope in &mut scratch.slopes {
-            slope.resize(points.len(), 0.0);
-        }
-        let [x, y, z] = &scratch.single;
-        let [value, dx, dy, dz] = &mut scratch.slopes;
-        scratch.evaluator.shortest_gradients(tape, [x, y, z], Gradients { value, dx, dy, dz });
-        let gradients = dx.iter().zip(dy).zip(dz).map(|((dx, dy), dz)| Vec3A::new(*dx, *dy, *dz));
-        out.extend(value.iter().zip(gradients).map(|(&value, gradient)| Slope { value, gradient }));
+        gradients(&mut scratch.evaluator, tape, &scratch.single, &mut scratch.slopes, out);
         true
     }
+}
+
+/// Adds values and gradients at points to `out`.
+fn gradients(
+    evaluator: &mut Evaluator,
+    tape: &Tape,
+    [x, y, z]: &[Vec<f32>; 3],
+    room: &mut [Vec<f32>; 4],
+    out: &mut Vec<Slope>,
+) {
+    for column in &mut *room {
+        column.resize(x.len(), 0.0);
+    }
+    let [value, dx, dy, dz] = room;
+    evaluator.shortest_gradients(tape, [x, y, z], Gradients { value, dx, dy, dz });
+    let gradients = dx.iter().zip(dy).zip(dz).map(|((dx, dy), dz)| Vec3A::new(*dx, *dy, *dz));
+    out.extend(value.iter().zip(gradients).map(|(&value, gradient)| Slope { value, gradient }));
 }
 
 /// The coordinates of points, axis by axis.

@@ -151,7 +151,7 @@ pub(super) fn node(operation: Operation, operands: Vec<Solid>, blend: Blend, tol
     let ball = radius.filter(|_| blend.check().is_ok()).map(|radius| {
         let join = Node::Join { operation, rule: RFunction::MIN_MAX, operands: operands.clone() };
         let distance = if operation == Operation::Union { radius } else { -radius };
-        super::length::ball(&Solid::from_node(join), distance, tolerance)
+        super::length::ball(&Solid::from_node(join), distance, tolerance, Some(blend))
     });
     Node::Blend { operation, blend, operands, tolerance, ball }
 }

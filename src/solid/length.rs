@@ -1,6 +1,7 @@
 //! Levels, offsets and shells.
 
 use super::{Length, Node, Solid};
+use crate::Blend;
 
 impl Solid {
     fn moved(&self, length: Length) -> Solid {
@@ -152,15 +153,16 @@ pub(super) fn node(operand: &Solid, length: Length, tolerance: Option<f64>) -> N
     let ball = match length {
         // It is said of the length itself.
         _ if length.check().is_err() => None,
-        Length::Rounded(radius) => Some(ball(operand, -radius, tolerance)),
-        Length::Filleted(radius) => Some(ball(operand, radius, tolerance)),
+        Length::Rounded(radius) => Some(ball(operand, -radius, tolerance, None)),
+        Length::Filleted(radius) => Some(ball(operand, radius, tolerance, None)),
         _ => None,
     };
-    Node::Length { operand: operand.clone(), length, tolerance, ball }
+    Node::Length { operand: operand.clone(), length, tolerance, ball, about: None }
 }
 
 /// Where the centre of a ball may be that rolls along a solid. It is measured from in its turn:
-/// half of the tolerance is for either.
-pub(super) fn ball(operand: &Solid, distance: f64, tolerance: Option<f64>) -> Solid {
-    Solid::from_node(node(operand, Length::Offset(distance), tolerance.map(|tolerance| 0.5 * tolerance)))
+/// half of the tolerance is for either. That of a blend is told about its joints alone.
+pub(super) fn ball(operand: &Solid, distance: f64, tolerance: Option<f64>, about: Option<Blend>) -> Solid {
+    let (operand, length, tolerance) = (operand.clone(), Length::Offset(distance), tolerance.map(|all| 0.5 * all));
+    Solid::from_node(Node::Length { operand, length, tolerance, ball: None, about })
 }

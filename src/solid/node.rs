@@ -90,6 +90,9 @@ pub(crate) enum Node {
         tolerance: Option<f64>,
         /// The same for a length that is a ball's radius.
         ball: Option<Solid>,
+        /// The blend of the operands of its operand whose ball it is: it is asked for where these
+        /// are near each other, and nowhere else.
+        about: Option<Blend>,
     },
     /// What a verb makes of a solid out of several nodes: `built`.
     Repeated {

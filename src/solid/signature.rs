@@ -123,6 +123,11 @@ impl Signature {
             }
             _ => node.parameters(),
         };
+        // What is told in some places is not what is told all over.
+        let parameters = match node {
+            Node::Length { about: Some(blend), .. } => format!("{parameters} about {blend:?}"),
+            _ => parameters,
+        };
         Signature { variant: discriminant(node), kind: node.kind(), name, parameters, operands }
     }
 }

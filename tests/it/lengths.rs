@@ -5,6 +5,7 @@
 
 mod fillets;
 mod laws;
+mod nested;
 mod plane;
 mod reference;
 mod subject;

@@ -178,7 +178,7 @@ impl Swept for Polygon {
     }
 }
 
-fn verbs() -> [(&'static str, &'static str, Make); 56] {
+fn verbs() -> [(&'static str, &'static str, Make); 62] {
     [
         ("union", "alpha", |v| ball().union(block(), RFunction::Alpha(v))),
         ("union", "p", |v| ball().union(block(), RFunction::P(v))),
@@ -210,6 +210,12 @@ fn verbs() -> [(&'static str, &'static str, Make); 56] {
         ("offset", "distance", |v| block().offset(v)),
         ("offset", "distance", |v| Solid::superellipsoid(DVec3::ONE, 0.3, 0.5).offset(v)),
         ("shell", "thickness", |v| block().shell(v)),
+        ("rounded", "radius", |v| block().rounded(v)),
+        ("filleted", "radius", |v| block().filleted(v)),
+        ("offset", "distance", |v| disc().offset(v).extrude(1.0)),
+        ("shell", "thickness", |v| disc().shell(v).extrude(1.0)),
+        ("rounded", "radius", |v| disc().rounded(v).extrude(1.0)),
+        ("filleted", "radius", |v| disc().filleted(v).extrude(1.0)),
         ("translate", "translation.y", |v| ball().translate([0.0, v, 0.0])),
         ("rotate", "", |v| ball().rotate(DQuat::from_xyzw(v, 0.0, 0.0, 1.0))),
         ("rotate_x", "angle", |v| ball().rotate_x(rad(v))),

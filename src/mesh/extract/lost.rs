@@ -4,7 +4,7 @@
 //!     o   o   o   o       o   o   o   o       *   *   *   *       Dots are nodes outside, stars
 //!     ===========         \ o_* / o \ */      * _ * _ * _ *       nodes inside.
 //!     o   o   o   o       o   o   o   o       *|_|*|_|*|_|*
-//!     hidden: no node     torn: some nodes    bored: a hole
+//!     hidden: no node     torn: some nodes    bored: a hole or a gap
 //!     is in the wall      are in the wall     between nodes
 //! ```
 //!
@@ -19,21 +19,21 @@
 //!    normals, less than [`WALL`] cells apart; or one in and about which most nodes of their sign
 //!    are of this kind. The edge of an acute wedge has such nodes in a line before its others, a
 //!    torn wall, however small, has no others.
-//! 3. *Bored*: a block with a crossing that holds a convex leaf thinner than [`BORE`] cells.
+//! 3. *Bored*: a block with a crossing that holds a convex leaf thinner than [`BORE`] cells, or
+//!    whose surface is passed there and back [between nodes](super::skipped).
 //!
 //! Intervals are budgeted: a block that is not decided in its share of them is counted. So hidden
 //! features are counted if ranges do not tell, and few intervals are taken; the count is the same
 //! for any number of threads.
 //!
 //! Limits: what ends within [`TIP`](super::suspect::TIP) cells of a crossed block is taken for the
-//! tip of what is seen there; notches of one leaf that is not convex (a slot in a polygon), and
-//! thin gaps between leaves that are thicker than cells, are not told where the block has a
-//! crossing elsewhere and no node falls into them.
+//! tip of what is seen there.
 
 use glam::Vec3;
 use rayon::prelude::*;
 
 use super::parts::Parts;
+use super::skipped::{Asked, Skips};
 use super::suspect::{CellRows, Suspect, Suspicion};
 use super::{Part, Sampler};
 use crate::mesh::lattice::Lattice;
@@ -66,14 +66,23 @@ const LEAST: usize = 640;
 /// Whether a block without a crossing, or a bored one, is looked at again, given its samples.
 pub(super) fn suspected<S: Sampler>(
     (sampler, lattice): (&S, &Lattice),
+    (scratch, skips): (&mut S::Scratch, &mut Skips),
     (number, block): (usize, [u32; 3]),
     (signs, values): (&Signs, &[f32; NODES]),
 ) -> Option<Suspicion> {
+    let slope = || {
+        let bound = sampler.lipschitz_bound(number, block);
+        if bound.is_finite() { bound * lattice.step() } else { STEEPER * f64::from(steepest(values)) }
+    };
     if signs.is_mixed() {
-        return sampler.is_bored(number, block).then_some(Suspicion::Bored);
+        let is_bored = sampler.is_bored(number, block)
+            || sampler.may_skip(number, block) && {
+                let [most, step] = [slope(), lattice.step()].map(|length| length as f32);
+                skips.are_passed((sampler, scratch), Asked { number, most, step }, (signs, values))
+            };
+        return is_bored.then_some(Suspicion::Bored);
     }
-    let bound = sampler.lipschitz_bound(number, block);
-    let slope = if bound.is_finite() { bound * lattice.step() } else { STEEPER * f64::from(steepest(values)) };
+    let slope = slope();
     CellRows::near(values, (REACH * slope) as f32).map(|cells| Suspicion::Hidden(Box::new(cells)))
 }
 
