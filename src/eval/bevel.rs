@@ -229,8 +229,8 @@ impl AnyField for Bevel {
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
         let [out] = chunk.out;
         let local = Locals::of(&chunk.points, chunk.placement);
-        out.copy_from_slice(&self.chunk(&local, false).value[..out.len()]);
-        finish(chunk.placement, out);
+        out[..local.count()].copy_from_slice(&self.chunk(&local, false).value);
+        finish(chunk.placement, out, local.count());
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
