@@ -229,8 +229,8 @@ impl AnyField for Bevel {
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
         let [out] = chunk.out;
         let local = Locals::of(&chunk.points, chunk.placement);
-        out.copy_from_slice(&self.chunk(&local, false).value[..out.len()]);
-        finish(chunk.placement, out);
+        out[..local.count()].copy_from_slice(&self.chunk(&local, false).value);
+        finish(chunk.placement, out, local.count());
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
@@ -259,6 +259,20 @@ impl AnyField for Bevel {
 mod tests {
     use super::*;
     use crate::Solid;
+
+    /// Where a rim lies in a face of an operand slopes have bounds: to either side of the face it is
+    /// the same plane.
+    #[test]
+    fn slopes_at_rims_have_bounds() {
+        let post = Solid::superellipsoid([0.5, 0.5, 1.0], 0.3, 0.7);
+        for plate in [Solid::cuboid([2.0, 2.0, 0.4]), Solid::cylinder(1.0, 0.4)] {
+            let operands = [&plate, &post].map(|solid| solid.surface_program().expect("the solid is valid"));
+            let bevel = Bevel::new(operands, [1.0; 2], Chamfer { leg: 0.15, steepest: 1.0 }, Bounds::ALL);
+            let rim = Bounds::from_center(DVec3::new(0.65, 0.0, 0.2), DVec3::splat(0.02));
+            let Dual { d, .. } = bevel.dual_range(Dual::point(Zone::of_bounds(&rim).hull()));
+            assert!(d.iter().all(|slope| slope.width() < 1.0), "{d:?}");
+        }
+    }
 
     /// The leaf changes by no more than its slopes say, and they are known beside its rims.
     #[test]

@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 
 use super::{Evaluator, Gradients, Program, Tape};
 use crate::{Bounds, Dual, Interval, Jet, ParamError};
-use rvachev_field::kernel::CHUNK;
+use rvachev_field::kernel::{CHUNK, distinct, repeat};
 use rvachev_field::{AnyField, Chunk, Placement, Way, Zone};
 use rvachev_num::symbol::Symbol;
 
@@ -116,8 +116,8 @@ impl AnyField for Composite {
         let [out] = chunk.out;
         // Where values are shifted, others decide.
         let band = if chunk.placement.shift == 0.0 { band / chunk.placement.scale } else { f64::INFINITY };
-        with_evaluator(|evaluator| local.values(evaluator, self.program.tape(), band, out));
-        finish(chunk.placement, out);
+        with_evaluator(|evaluator| local.values(evaluator, self.program.tape(), band, &mut *out));
+        finish(chunk.placement, out, local.count());
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
@@ -176,7 +176,7 @@ pub(super) fn with_evaluator<T>(work: impl FnOnce(&mut Evaluator) -> T) -> T {
     result
 }
 
-/// A chunk's points in a leaf's own coordinates.
+/// A chunk's points in a leaf's own coordinates, each once.
 pub(super) struct Locals {
     at: [Vec<f32>; 3],
 }
@@ -219,9 +219,10 @@ impl Slopes {
 
 impl Locals {
     pub(super) fn of(points: &[&[f32]; 3], placement: &Placement) -> Locals {
-        let [xs, ys, zs] = points;
+        let own = distinct(*points);
+        let [xs, ys, zs] = points.map(|axis| &axis[..own]);
         let mut locals = Locals::with_capacity(xs.len());
-        for ((x, y), z) in xs.iter().zip(*ys).zip(*zs) {
+        for ((x, y), z) in xs.iter().zip(ys).zip(zs) {
             let p = placement.apply([f64::from(*x), f64::from(*y), f64::from(*z)]);
             locals.push(DVec3::from_array(p));
         }
@@ -265,31 +266,36 @@ impl Locals {
     }
 }
 
-/// Values as they count outside of the leaf's frame.
-pub(super) fn finish(placement: &Placement, values: &mut [f32]) {
-    for value in values {
+/// So many values as they count outside of the leaf's frame; the others are like the last.
+pub(super) fn finish(placement: &Placement, values: &mut [f32], count: usize) {
+    for value in &mut values[..count] {
         *value = placement.finish(f64::from(*value)) as f32;
     }
+    repeat(values, count);
 }
 
-/// Values and gradients as they count outside of the leaf's frame.
+/// Values and gradients as they count outside of the leaf's frame; those that there are no more of
+/// are like the last.
 pub(super) fn write_gradients(placement: &Placement, slopes: &Slopes, out: [&mut [f32]; 4]) {
     let [value, dx, dy, dz] = out;
-    for i in 0..value.len() {
+    let count = slopes.value.len();
+    for i in 0..count {
         let (v, g) = slopes.at(i);
         let [x, y, z] = placement.pull((g * placement.scale).to_array());
         value[i] = placement.finish(v) as f32;
         (dx[i], dy[i], dz[i]) = (x as f32, y as f32, z as f32);
     }
+    [value, dx, dy, dz].into_iter().for_each(|list| repeat(list, count));
 }
 
 /// Lanes of `f64`, point by point: they settle a doubtful sign here and there.
 pub(super) fn points64(field: &dyn AnyField, chunk: Chunk<'_, f64, 1>) {
-    let [out] = chunk.out;
-    for (i, out) in out.iter_mut().enumerate() {
+    let ([out], own) = (chunk.out, distinct(chunk.points));
+    for (i, out) in out[..own].iter_mut().enumerate() {
         let p = chunk.placement.apply([0, 1, 2].map(|axis| chunk.points[axis][i]));
         *out = chunk.placement.finish(field.value(p));
     }
+    repeat(out, own);
 }
 
 /// The same place, the value as it is.
@@ -297,4 +303,52 @@ pub(super) fn unscaled(placement: &Placement) -> Placement {
     let mut unscaled = *placement;
     (unscaled.scale, unscaled.shift) = (1.0, 0.0);
     unscaled
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    use super::*;
+    use crate::Real;
+    use rvachev_field::Field;
+
+    /// A ball that counts how often it is asked.
+    #[derive(Debug, Default)]
+    struct Counted(AtomicU32);
+
+    impl Field for Counted {
+        fn name(&self) -> &'static str {
+            "ball"
+        }
+
+        fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+            self.0.fetch_add(1, Ordering::Relaxed);
+            x.lift(1.0) - (x * x + y * y + z * z).sqrt()
+        }
+
+        fn bounds(&self) -> Bounds {
+            Bounds::new(DVec3::splat(-1.0), DVec3::splat(1.0))
+        }
+
+        fn check(&self) -> Result<(), ParamError> {
+            Ok(())
+        }
+    }
+
+    /// What a chunk is filled up with is not asked for point by point.
+    #[test]
+    fn copies_of_the_last_point_have_its_value() {
+        let (field, mut out) = (Counted::default(), [0.0; 32]);
+        let mut axis = [0.5; 32];
+        axis[..3].copy_from_slice(&[0.5, 0.5, 0.25]);
+        axis[3..].fill(0.125);
+        let points = [&axis[..]; 3];
+        points64(&field, Chunk { points, placement: &Placement::IDENTITY, out: [&mut out] });
+        assert_eq!(field.0.into_inner(), 4);
+        for (x, value) in axis.iter().zip(out) {
+            assert!((value - (1.0 - 3.0_f64.sqrt() * x)).abs() < 1e-12, "{value} at {x}");
+        }
+        assert_eq!(Locals::of(&[&[1.0, 1.0, 2.0, 2.0]; 3], &Placement::IDENTITY).count(), 3);
+    }
 }

@@ -28,6 +28,7 @@ use super::composite::unscaled;
 use super::few::{Few, Lane};
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::VALUE_LIMIT;
+use rvachev_field::kernel::{distinct, repeat};
 use rvachev_field::{AnyField, Chunk, Way, Zone, bits, steep_slopes};
 use rvachev_num::symbol::Symbol;
 
@@ -388,25 +389,26 @@ impl AnyField for Fill {
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let Chunk { points, placement, out } = chunk;
-        let own = unscaled(placement);
+        let frame = unscaled(placement);
         let count = points[0].len();
         let slopes = |side: &Signed| {
             let mut out = [(); 4].map(|()| vec![0.0f32; count]);
             let [value, x, y, z] = &mut out;
-            side.field.gradients(Chunk { points, placement: &own, out: [value, x, y, z] });
+            side.field.gradients(Chunk { points, placement: &frame, out: [value, x, y, z] });
             out
         };
         let of = |list: &[Vec<f32>; 4], sign: f64, i: usize| {
             let [x, y, z] = [1, 2, 3].map(|k| sign * f64::from(list[k][i]));
             DVec3::new(x, y, z)
         };
+        let own = distinct(points);
         let local = |i: usize| DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
-        let is_far = (0..count).all(|i| self.depth(local(i)).0 < self.lowest());
+        let is_far = (0..own).all(|i| self.depth(local(i)).0 < self.lowest());
         let asked = |side: &Signed| if is_far { [(); 4].map(|()| vec![0.0; count]) } else { slopes(side) };
         let ball = asked(&self.ball);
         let sides: Vec<[Vec<f32>; 4]> = self.sides.iter().map(|side| asked(&side.distance)).collect();
         let [value, dx, dy, dz] = out;
-        for i in 0..count {
+        for i in 0..own {
             let local = local(i);
             let two = self.two_of(local, |number| self.sides[number].distance.sign * f64::from(sides[number][0][i]));
             let (v, (depth, way)) = (self.ball.sign * f64::from(ball[0][i]), self.depth(local));
@@ -424,6 +426,7 @@ impl AnyField for Fill {
             let scaled = slope * placement.scale;
             (dx[i], dy[i], dz[i]) = (scaled.x as f32, scaled.y as f32, scaled.z as f32);
         }
+        [value, dx, dy, dz].into_iter().for_each(|list| repeat(list, own));
     }
 
     fn cost(&self) -> usize {
@@ -439,9 +442,10 @@ impl Fill {
         let band = if placement.shift == 0.0 { band / placement.scale } else { f64::INFINITY };
         let band = band.min(self.farthest());
         let local = |i: usize| DVec3::from_array(placement.apply([0, 1, 2].map(|axis| points[axis][i].to_f64())));
-        let depths: Vec<f64> = (0..out.len()).map(|i| self.depth(local(i)).0).collect();
+        let count = distinct(points);
+        let depths: Vec<f64> = (0..count).map(|i| self.depth(local(i)).0).collect();
         let mut all = depths.clone();
-        let mut open = Few::of((0..out.len()).filter(|i| depths[*i] > -band), points);
+        let mut open = Few::of((0..count).filter(|i| depths[*i] > -band), points);
         let own = unscaled(placement);
         let most = (MOST * self.radius).max(band + self.margin);
         let balls = open.values(&self.ball, &own, (self.radius, most));
@@ -460,6 +464,7 @@ impl Fill {
         for (out, value) in out.iter_mut().zip(all) {
             *out = E::from_f64(placement.finish(value));
         }
+        repeat(out, count);
     }
 
     /// The two nearest operands, by values that are known.

@@ -19,6 +19,7 @@ use super::composite::points64;
 use super::source::{DistanceSource, Wanted};
 use super::tiling::{Key, Representative, Tiling};
 use crate::{Bounds, Dual, Interval, ParamError, Run, Solid};
+use rvachev_field::kernel::{distinct, repeat};
 use rvachev_field::{AnyField, Chunk, Patches, Placement, SurfaceDistance, VALUE_LIMIT, Zone, steep_slopes};
 use rvachev_num::symbol::Symbol;
 
@@ -281,13 +282,15 @@ impl AnyField for Tiles {
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
         let Chunk { points, placement, out: [out] } = chunk;
         let local = |i: usize| placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i])));
-        if let Some(tile) = self.only((0..out.len()).map(local)) {
+        let own = distinct(points);
+        if let Some(tile) = self.only((0..own).map(local)) {
             let placement = &tile.placement(placement);
             return tile.surface.lanes32(Chunk { points, placement, out: [out] });
         }
-        for (i, out) in out.iter_mut().enumerate() {
+        for (i, out) in out[..own].iter_mut().enumerate() {
             *out = placement.finish(self.value(local(i))) as f32;
         }
+        repeat(out, own);
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
@@ -297,11 +300,12 @@ impl AnyField for Tiles {
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let Chunk { points, placement, out } = chunk;
         let local = |i: usize| placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i])));
-        if let Some(tile) = self.only((0..points[0].len()).map(local)) {
+        let own = distinct(points);
+        if let Some(tile) = self.only((0..own).map(local)) {
             let placement = &tile.placement(placement);
             return tile.surface.gradients(Chunk { points, placement, out });
         }
-        for (i, p) in (0..points[0].len()).map(local).enumerate() {
+        for (i, p) in (0..own).map(local).enumerate() {
             let dual = self.dual(Dual::point(p));
             let slope = placement.pull(dual.gradient().map(|part| part * placement.scale));
             out[0][i] = placement.finish(dual.value()) as f32;
@@ -309,6 +313,7 @@ impl AnyField for Tiles {
                 out[axis + 1][i] = slope[axis] as f32;
             }
         }
+        out.into_iter().for_each(|list| repeat(list, own));
     }
 }
 

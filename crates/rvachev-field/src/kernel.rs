@@ -37,6 +37,23 @@ pub(crate) use on_level;
 /// Slices are multiples of this many elements.
 pub const CHUNK: usize = 256;
 
+/// How many points of a chunk there are up to those that are the same as the last: chunks are filled
+/// up with copies of it, which whoever goes point by point need not look at.
+#[inline]
+pub fn distinct<E: Element>([x, y, z]: [&[E]; 3]) -> usize {
+    let is_same = |i: &usize| x[*i] == x[*i - 1] && y[*i] == y[*i - 1] && z[*i] == z[*i - 1];
+    x.len() - (1..x.len()).rev().take_while(is_same).count()
+}
+
+/// Gives those from one on what the one before them has.
+#[inline]
+pub fn repeat<T: Copy>(all: &mut [T], from: usize) {
+    let (known, rest) = all.split_at_mut(from);
+    if let Some(last) = known.last() {
+        rest.fill(*last);
+    }
+}
+
 /// A formula from `I` numbers to `O`.
 pub trait Formula<const I: usize, const O: usize>: Sized {
     /// The formula.

@@ -31,7 +31,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::blend::{self, RicciSide};
 use super::{ParamError, VALUE_LIMIT};
-use crate::{Euclid, Joined, Monotone, Monotone3, Norm, NormKind, Op, Powers, Real};
+use crate::{Euclid, Interval, Joined, Monotone, Monotone3, Norm, NormKind, Op, Powers, Real};
 
 /// How set operations combine values. All rules give the same solid; they differ in the
 /// field around and inside it.
@@ -373,6 +373,10 @@ impl Monotone for DistanceAnd {
         let least = x.min(y);
         (Monotone::value(self, x, y), least.select(first, -nx), least.select(one - first, -ny))
     }
+
+    fn only(&self, of: [Interval; 2]) -> Option<usize> {
+        nearest(of)
+    }
 }
 
 impl Monotone3 for DistanceAnd {
@@ -393,6 +397,15 @@ impl Monotone3 for DistanceAnd {
             [least.select(first, -nx), least.select(others * second, -ny), least.select(others * (one - second), -nz)];
         (Monotone3::value(self, x, y, z), slopes)
     }
+
+    fn only(&self, of: [Interval; 3]) -> Option<usize> {
+        nearest(of)
+    }
+}
+
+/// Which of some faces is the nearest throughout, where points are inside of all others.
+fn nearest<const N: usize>(of: [Interval; N]) -> Option<usize> {
+    (0..N).find(|&which| (0..N).all(|other| other == which || of[other].lo() > of[which].hi().max(0.0)))
 }
 
 impl Monotone for RoundedAnd {

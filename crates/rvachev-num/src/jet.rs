@@ -348,11 +348,17 @@ impl Real for Jet {
 
     // The formula tells how slopes change, the function's own slopes what they are.
     fn monotone<M: Monotone>(self, o: Jet, function: &M) -> Jet {
+        if let Some(which) = function.only([self.v, o.v]) {
+            return [self, o][which];
+        }
         let (v, a, b) = function.parts(self.v, o.v);
         Jet { h: function.value(self, o).h, ..self.chain2(&o, v, [a, b], [ZERO; 3]) }
     }
 
     fn monotone3<M: Monotone3>(self, y: Jet, z: Jet, function: &M) -> Jet {
+        if let Some(which) = function.only([self.v, y.v, z.v]) {
+            return [self, y, z][which];
+        }
         let (v, [a, b, c]) = function.parts(self.v, y.v, z.v);
         let both = self.chain2(&y, v, [a, b], [ZERO; 3]);
         let h = if M::ITERATES { [Interval::ALL; 6] } else { function.value(self, y, z).h };

@@ -1,6 +1,6 @@
 //! Functions of two and of three arguments that rise with each of them, and functions of one.
 
-use super::Real;
+use super::{Interval, Real};
 
 /// A function of two numbers that does not fall when either of them rises, as all
 /// R-functions but R_0^m are.
@@ -13,6 +13,11 @@ pub trait Monotone {
 
     /// The value and the slopes with respect to `x` and `y`.
     fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R);
+
+    /// Which of the arguments the value is throughout these ranges, if it is found to be one.
+    fn only(&self, _of: [Interval; 2]) -> Option<usize> {
+        None
+    }
 }
 
 /// A function of three numbers that does not fall when any of them rises, such as a gauge that
@@ -31,6 +36,11 @@ pub trait Monotone3 {
 
     /// The value and the slopes with respect to `x`, `y` and `z`.
     fn parts<R: Real>(&self, x: R, y: R, z: R) -> (R, [R; 3]);
+
+    /// Which of the arguments the value is throughout these ranges, if it is found to be one.
+    fn only(&self, _of: [Interval; 3]) -> Option<usize> {
+        None
+    }
 }
 
 /// A function of one number, of several operations: a gradient is its value and its slope, found

@@ -12,7 +12,7 @@ use super::packet::{Packet, WIDEST};
 use super::packets::{Packets, Seeds};
 use super::pairs::{Found, Pairs};
 use super::search::{Entries, Stack};
-use crate::kernel::{Element, on_level};
+use crate::kernel::{Element, distinct, on_level, repeat};
 use crate::{Chunk, Placement};
 
 /// What is left of a distance, in units of the frame, that points are certain to be apart.
@@ -106,23 +106,6 @@ fn unscaled(placement: &Placement) -> Placement {
     let mut unscaled = *placement;
     (unscaled.scale, unscaled.shift) = (1.0, 0.0);
     unscaled
-}
-
-/// How many points there are up to those that are the same as the last: chunks are filled up with
-/// copies of it.
-#[inline(always)]
-fn distinct<E: Element>([x, y, z]: [&[E]; 3], here: ops::Range<usize>) -> usize {
-    let is_same = |i: &usize| x[*i] == x[*i - 1] && y[*i] == y[*i - 1] && z[*i] == z[*i - 1];
-    here.len() - (here.start + 1..here.end).rev().take_while(is_same).count()
-}
-
-/// Gives those from one on what the one before them has.
-#[inline(always)]
-fn repeat<T: Copy>(all: &mut [T], from: usize) {
-    let (known, rest) = all.split_at_mut(from);
-    if let Some(last) = known.last() {
-        rest.fill(*last);
-    }
 }
 
 /// Loads a vector of each column.
@@ -246,7 +229,7 @@ fn values_on<L: Lanes<Element: Element> + Packet>(
     let mut from = 0;
     while from < out.len() {
         let len = BLOCK.min(out.len() - from);
-        let own = L::WIDTH * distinct(points, from..from + len).div_ceil(L::WIDTH);
+        let own = L::WIDTH * distinct(points.map(|axis| &axis[from..from + len])).div_ceil(L::WIDTH);
         work.find(simd, packets, points, out, from..from + own, false);
         work.block.unsorted(&work.found.squares, &mut squares[..own]);
         repeat(&mut squares[..len], own);
@@ -305,7 +288,7 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
     let mut from = 0;
     while from < out[0].len() {
         let len = BLOCK.min(out[0].len() - from);
-        let own = L::WIDTH * distinct(points, from..from + len).div_ceil(L::WIDTH);
+        let own = L::WIDTH * distinct(points.map(|axis| &axis[from..from + len])).div_ceil(L::WIDTH);
         work.find(simd, packets, points, &*out[0], from..from + own, true);
         for (way, sorted) in ways.iter_mut().zip(&work.found.ways) {
             work.block.unsorted(sorted, &mut way[..own]);

@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec3};
 use super::super::SurfaceDistance;
 use super::MeshLeaf;
 use super::rim::Membrane;
-use crate::kernel::Element;
+use crate::kernel::{Element, distinct, repeat};
 use crate::{
     AnyField, Bounds, COORDINATE_LIMIT, Chunk, Dual, Facets, Interval, ParamError, Placement, VALUE_LIMIT, Way, Zone,
     bits, steep_slopes,
@@ -33,10 +33,12 @@ impl MeshLeaf {
 
     /// Values where there are openings, point by point.
     fn open<E: Element>(&self, membrane: &Membrane, points: [&[E]; 3], placement: &Placement, out: &mut [E]) {
-        for at in 0..out.len() {
+        let own = distinct(points);
+        for at in 0..own {
             let p = placement.apply([points[0][at], points[1][at], points[2][at]].map(E::to_f64));
             out[at] = E::from_f64(placement.finish(self.open_value(membrane, DVec3::from_array(p))));
         }
+        repeat(out, own);
     }
 
     fn open_value(&self, membrane: &Membrane, p: DVec3) -> f64 {
@@ -249,7 +251,8 @@ impl AnyField for MeshLeaf {
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let Some(membrane) = &self.membrane else { return self.distance.gradients(chunk) };
         let Chunk { points: [x, y, z], placement, out } = chunk;
-        for at in 0..x.len() {
+        let own = distinct([x, y, z]);
+        for at in 0..own {
             let p = placement.apply([x[at], y[at], z[at]].map(f64::from));
             let (value, slope) = self.open_jet(membrane, p);
             let pulled = placement.pull(slope.map(|part| part * placement.scale));
@@ -258,6 +261,7 @@ impl AnyField for MeshLeaf {
                 out[1 + axis][at] = part as f32;
             }
         }
+        out.into_iter().for_each(|column| repeat(column, own));
     }
 
     fn cost(&self) -> usize {
