@@ -25,10 +25,10 @@ struct Kept(Option<Triangles>);
 struct There(Arc<Surface>);
 
 /// Triangles that are the surface of a solid.
-struct Triangles {
-    all: Vec<[DVec3; 3]>,
+pub(super) struct Triangles {
+    pub(super) all: Vec<[DVec3; 3]>,
     /// How far the surface may be off them.
-    rounding: f64,
+    pub(super) rounding: f64,
 }
 
 /// The surface of a solid, if triangles are exactly that.
@@ -56,14 +56,14 @@ pub(super) fn surface(solid: &Solid, run: &Run) -> Result<Option<Arc<Surface>>, 
     Ok(Some(surface))
 }
 
-/// The triangles of a mesh that was read and moved, if they are exactly its surface, and how far
-/// that may be off them.
-pub(super) fn facets(solid: &Solid, run: &Run) -> Result<Option<(Vec<[DVec3; 3]>, f64)>, Cancelled> {
+/// The triangles of a mesh that was read and moved, if they are exactly its surface.
+pub(super) fn facets(solid: &Solid, run: &Run) -> Result<Option<Triangles>, Cancelled> {
     let (still, map) = at_rest(solid);
     let Node::Leaf(_) = still.node() else { return Ok(None) };
     let kept = kept(still, run)?;
     let Kept(Some(own)) = &*kept else { return Ok(None) };
-    Ok(Some((own.all.iter().map(|triangle| placed(triangle, &map)).collect(), own.rounding * stretch(&map))))
+    let all = own.all.iter().map(|triangle| placed(triangle, &map)).collect();
+    Ok(Some(Triangles { all, rounding: own.rounding * stretch(&map) }))
 }
 
 /// The triangles of a solid at rest, found once.

@@ -20,7 +20,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::ThicknessReport;
-use super::exact::facets;
+use super::exact::{Triangles, facets};
 use super::fine::Fine;
 use crate::error::MeshingError;
 use crate::mesh::{Slopes, each_triangle};
@@ -85,10 +85,10 @@ impl Solid {
         let [to_mesh, to_measure] = run.stages([0.4, 0.6]);
         let is_whole = settings.bounds.is_none() && !settings.owners;
         let facets = if is_whole { facets(self, &Run { progress: None, ..to_mesh.clone() })? } else { None };
-        if let Some((triangles, rounding)) = facets {
+        if let Some(facets) = facets {
             let step = Lattice::new(&self.finite_bounds()?, settings.cell)?.step();
-            let fine = Fine::new(&triangles, step, &to_mesh)?;
-            let found = run.install(|| of_facets(&triangles, rounding, &fine, &to_measure))?;
+            let fine = Fine::new(&facets.all, step, &to_mesh)?;
+            let found = run.install(|| of_facets(&facets, &fine, &to_measure))?;
             run.report(1.0);
             return Ok(ThicknessReport::new(fine.mesh(), found));
         }
@@ -100,9 +100,9 @@ impl Solid {
     }
 }
 
-/// The thickness in the middle of each part of triangles that are the surface to such a rounding;
-/// infinite where nothing faces it, and of slivers, whose normals are those of what was rounded.
-fn of_facets(all: &[[DVec3; 3]], rounding: f64, fine: &Fine, run: &Run) -> Result<Vec<f64>, Cancelled> {
+/// The thickness in the middle of each part of triangles; infinite where nothing faces it, and of
+/// slivers, whose normals are those of what was rounded.
+fn of_facets(Triangles { all, rounding }: &Triangles, fine: &Fine, run: &Run) -> Result<Vec<f64>, Cancelled> {
     let [to_build, to_search] = run.stages([0.2, 0.8]);
     let normal = |[a, b, c]: &[DVec3; 3]| {
         let (across, side) = ((*b - *a).cross(*c - *a), a.distance(*b).max(b.distance(*c)).max(c.distance(*a)));
