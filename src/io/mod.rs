@@ -7,6 +7,20 @@
 //! extension, [`Mesh::read`](crate::Mesh::read) and [`PointCloud::read`](crate::PointCloud::read)
 //! by [`FileFormat`]. They are in the feature `import`.
 //!
+//! | format | read | not read: an error |
+//! |---|---|---|
+//! | STL | binary and text, which the content tells | |
+//! | OBJ | v, vt, vn, f, colours behind v | faces before their vertices |
+//! | PLY | text, binary in both orders; of other elements and properties any | |
+//! | 3MF | meshes and components, in other parts of the archive too; colours, unit; UTF-8 and UTF-16 | what is encrypted |
+//! | GLB | triangles, strips, fans, points; accessors of any kind, sparse ones too; nodes | data beside the file, compression |
+//! | XYZ, CSV | rows of numbers, with names above the columns or without | |
+//!
+//! Polygons become triangles within them. Files are not trusted: archives are unpacked by `zip`, XML
+//! and JSON parsed by `quick-xml` and `serde_json`, which take whatever bytes there are and are kept
+//! well; they unpack no more than [`LoadSettings::most_bytes`]. All else is read here, so that errors
+//! tell the line or byte, and no header is believed that claims more than there is.
+//!
 //! # Writers
 //!
 //! | type | extension | format | carries |

@@ -17,12 +17,16 @@
 //! Field* (2012), section 3.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::ThicknessReport;
+use super::exact::{Triangles, facets};
+use super::fine::Fine;
 use crate::error::MeshingError;
 use crate::mesh::{Slopes, each_triangle};
 use crate::program::Program;
-use crate::{Cancelled, Mesh, MeshSettings, Run, Solid};
+use crate::volume::Lattice;
+use crate::{Bounds, Cancelled, Mesh, MeshSettings, Run, Solid};
 use rvachev_field::{Patch, Walls};
 
 /// The cosine between normals that face each other is less.
@@ -34,6 +38,12 @@ const SLACK: f64 = 2e-3;
 
 /// A facet stands for the surface if the cosine between their normals is at least this.
 const ALIKE: f64 = 0.95;
+
+/// Triangles that are no wider than so many roundings have no normal.
+const SLIVER: f64 = 64.0;
+
+/// So many places are looked at between two looks at whether the run is cancelled.
+const AT_ONCE: usize = 1 << 12;
 
 /// Values that tell the surface's normal may be off by this part of the solid's size.
 const PRECISION: f64 = 1e-5;
@@ -62,18 +72,56 @@ impl Solid {
     /// the side of a cell and R the radius of curvature, and so is each thickness. Features that
     /// the mesh has lost are not seen: see [`thin_features`](Solid::thin_features).
     ///
+    /// [Meshes](Solid::from_mesh) that are closed and do not cross themselves are measured
+    /// themselves, wherever they were moved to: the report's mesh is made of their triangles, divided
+    /// to the size of a cell, and nothing is lost, however thin. Of an open mesh the film across the
+    /// opening counts as surface.
+    ///
     /// # Errors
     /// As for [`mesh`](Solid::mesh): what is wrong with the solid or the settings, or that the work
     /// was cancelled.
     pub fn thickness(&self, settings: &MeshSettings, run: &Run) -> Result<ThicknessReport, MeshingError> {
         let run = run.stage(0.0, 1.0);
         let [to_mesh, to_measure] = run.stages([0.4, 0.6]);
+        let is_whole = settings.bounds.is_none() && !settings.owners;
+        let facets = if is_whole { facets(self, &Run { progress: None, ..to_mesh.clone() })? } else { None };
+        if let Some(facets) = facets {
+            let step = Lattice::new(&self.finite_bounds()?, settings.cell)?.step();
+            let fine = Fine::new(&facets.all, step, &to_mesh)?;
+            let found = run.install(|| of_facets(&facets, &fine, &to_measure))?;
+            run.report(1.0);
+            return Ok(ThicknessReport::new(fine.mesh(), found));
+        }
         let mesh = self.mesh_with(settings, &to_mesh)?;
         let program = self.surface_program()?;
         let found = run.install(|| thicknesses(&mesh, &program, &to_measure))?;
         run.report(1.0);
         Ok(ThicknessReport::new(mesh, found))
     }
+}
+
+/// The thickness in the middle of each part of triangles; infinite where nothing faces it, and of
+/// slivers, whose normals are those of what was rounded.
+fn of_facets(Triangles { all, rounding }: &Triangles, fine: &Fine, run: &Run) -> Result<Vec<f64>, Cancelled> {
+    let [to_build, to_search] = run.stages([0.2, 0.8]);
+    let normal = |[a, b, c]: &[DVec3; 3]| {
+        let (across, side) = ((*b - *a).cross(*c - *a), a.distance(*b).max(b.distance(*c)).max(c.distance(*a)));
+        (across.length() > SLIVER * rounding * side).then(|| across.normalize_or_zero())
+    };
+    let normals: Vec<Option<DVec3>> = all.iter().map(normal).collect();
+    let kept = all.iter().zip(&normals).filter_map(|(own, normal)| Some((Patch::flat(*own), (*normal)?)));
+    let walls = Walls::new(&kept.collect::<Vec<_>>(), &to_build)?;
+    let largest = 0.5 * Bounds::from_points(all.iter().flatten().copied()).size().length();
+    let middles = fine.middles();
+    let parts: Vec<(DVec3, u32)> = middles.into_iter().zip(fine.parents.iter().copied()).collect();
+    let mut found = Vec::with_capacity(parts.len());
+    for some in parts.chunks(AT_ONCE) {
+        to_search.check()?;
+        to_search.report(found.len() as f64 / parts.len() as f64);
+        let radius = |(p, parent): &(DVec3, u32)| walls.ball(*p, normals[*parent as usize]?, largest, SLACK, FACING);
+        found.par_extend(some.par_iter().map(|part| radius(part).map_or(f64::INFINITY, |radius| 2.0 * radius)));
+    }
+    Ok(found)
 }
 
 /// The thickness at the middle of each triangle; infinite where nothing faces it, of what has no

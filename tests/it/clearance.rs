@@ -275,3 +275,30 @@ fn meshes_and_extruded_polygons_have_the_clearance_of_their_triangles() {
     assert!(!found.overlaps && (found.distance - 0.5).abs() < 1e-4, "{found:?}");
     assert!(clearance(&mesh(&block), &mesh(&Solid::cuboid([10.0; 3]))).overlaps);
 }
+
+#[test]
+fn of_default_meshes_that_touch_it_is_told_at_once_that_they_do() {
+    let mesh = |solid: &Solid| Solid::from_mesh(&solid.mesh(&MeshSettings::default()).unwrap(), MeshSolid::default());
+    let tilt = |solid: &Solid| solid.rotate_x(deg(20.0)).rotate_z(deg(35.0));
+    let block = Solid::cuboid([4.0, 4.0, 2.0]);
+    // What only touches goes no deeper than what counts as that, and nothing is left open.
+    let touching = |solid: &Solid| 2e-4 * solid.bounds().unwrap().longest_side();
+    let (own, tilted) = (mesh(&block), mesh(&tilt(&block)));
+    for (one, other) in [
+        (own.clone(), own.translate([1.0, 0.3, 2.0])),
+        (tilted.clone(), mesh(&tilt(&block.translate([0.5, 0.2, 2.0])))),
+        (tilted.clone(), mesh(&tilt(&Solid::cuboid([0.004; 3]).translate([0.5, 0.2, 1.002])))),
+        // In a corner of an L.
+        (mesh(&(&block | block.translate([0.0, 2.0, 2.0]))), own.translate([0.0, -2.0, 2.0])),
+    ] {
+        let found = one.clearance(&other, &Run::default()).unwrap().unwrap();
+        let most = touching(&one) + touching(&other);
+        assert!(!found.overlaps && found.distance < most && found.tolerance < 1.25 * most, "{found:?}");
+    }
+    for solid in [own, tilted, mesh(&Solid::sphere(2.0))] {
+        let found = solid.clearance(&solid, &Run::default()).unwrap().unwrap();
+        let most = touching(&solid);
+        assert!(found.overlaps && found.depth < 1.01 * most && found.depth_error < 1.01 * most, "{found:?}");
+        assert!((found.volume - solid.measure(1e-3).unwrap().volume).abs() <= found.volume_error, "{found:?}");
+    }
+}

@@ -1,7 +1,7 @@
 //! The thickness of solids, against closed forms.
 
-use glam::DVec3;
-use rvachev::{CellSize, Mesh, MeshSettings, Run, Solid, ThicknessReport, deg};
+use glam::{DVec3, Vec3};
+use rvachev::{Bounds, CellSize, Mesh, MeshSettings, MeshSolid, Run, Solid, ThicknessReport, deg};
 
 fn thickness(solid: &Solid, cells: u32) -> ThicknessReport {
     let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
@@ -85,4 +85,58 @@ fn reports_are_shown_as_text_and_as_colours() {
     let nothing = thickness(&(Solid::sphere(1.0) & Solid::sphere(1.0).translate([5.0, 0.0, 0.0])), 8);
     assert_eq!((nothing.least, nothing.share_below(1.0)), (f64::INFINITY, 0.0));
     assert_eq!(nothing.to_string(), "no part of the surface faces another");
+}
+
+#[test]
+fn walls_of_meshes_are_seen_however_thin_they_are() {
+    let read = |solid: &Solid, cell: f64| {
+        let mesh = solid.mesh(&MeshSettings { cell: CellSize::Length(cell), ..MeshSettings::default() }).unwrap();
+        (Solid::from_mesh(&mesh, MeshSolid::default()), mesh.area())
+    };
+    // A fin that passes between the nodes of 32 cells, and a foil.
+    let fin = Solid::cuboid([2.0, 2.0, 2.0]) | Solid::cuboid([0.03, 0.8, 0.8]).translate([0.0, 0.0, 1.3]);
+    let foil = Solid::cuboid([2.0, 2.0, 0.02]);
+    for (solid, cell, least) in [(fin, 0.02, 0.03), (foil, 0.016, 0.02)] {
+        let (read, area) = read(&solid, cell);
+        for part in [read.clone(), read.rotate_x(deg(30.0)).reflect_y().translate([50.0, 0.0, 0.0])] {
+            let report = thickness(&part, 32);
+            assert!((report.least - least).abs() < 0.01 * least, "{report}");
+            assert!(part.value(report.at).unwrap().abs() < 1e-5, "{report}");
+            let mesh = &report.mesh;
+            assert!(mesh.check().is_closed() && mesh.volume() > 0.0);
+            assert!((mesh.area() / area - 1.0).abs() < 1e-3);
+            assert_eq!(mesh.triangles().len(), report.thicknesses().len());
+            let longest = part.bounds().unwrap().longest_side();
+            let side = |t: &[u32; 3]| {
+                let [a, b] = [0, 1].map(|k| mesh.positions()[t[k] as usize]);
+                f64::from(a.distance(b))
+            };
+            assert!(mesh.triangles().iter().all(|t| side(t) < 1.01 * longest / 32.0));
+        }
+        // In a box it is the mesh of what is in the box.
+        let half = Bounds::new(DVec3::splat(-3.0), DVec3::new(0.5, 3.0, 3.0));
+        let settings = MeshSettings { cell: CellSize::Length(0.05), bounds: Some(half), ..MeshSettings::default() };
+        let report = read.thickness(&settings, &Run::default()).unwrap();
+        assert!(report.mesh.bounds().is_empty() || report.mesh.bounds().max.x < 0.51);
+    }
+}
+
+#[test]
+fn slivers_of_a_mesh_are_no_walls() {
+    // A box with a vertex all but on an edge, so that a triangle of its top has no width to speak
+    // of, and looks anywhere.
+    let corner = |k: u32| [0, 1, 2].map(|axis| if k >> axis & 1 == 1 { 1.0 } else { -1.0 });
+    let corners: Vec<Vec3> = (0..8).map(|k| Vec3::from_array(corner(k))).collect();
+    let quads = [[0, 2, 3, 1], [0, 1, 5, 4], [1, 3, 7, 5], [2, 6, 7, 3], [0, 4, 6, 2]];
+    let mut triangles: Vec<[u32; 3]> = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    triangles.extend([[4, 5, 8], [5, 7, 8], [7, 6, 8], [6, 4, 8]]);
+    let one = 1.0f32;
+    for [y, z] in [[one.next_down(), one], [one.next_up(), one], [one.next_down(), one.next_down()], [one, one + 3e-7]]
+    {
+        let positions = [&corners[..], &[Vec3::new(0.1, y, z)]].concat();
+        let mesh = Mesh::new(positions, triangles.clone()).unwrap();
+        assert!(mesh.check().is_closed());
+        let report = thickness(&Solid::from_mesh(&mesh, MeshSolid::default()), 16);
+        assert!((report.least - 2.0).abs() < 0.01, "{y} {z}: {report}");
+    }
 }

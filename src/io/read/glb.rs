@@ -3,7 +3,7 @@
 //! Taken are the meshes of the default scene, moved as its nodes say and turned from y upwards to z
 //! upwards, with normals, colours and texture coordinates: triangles, strips and fans, and points
 //! for clouds. Vertices at one position become one, as writers split them where normals differ.
-//! Sparse accessors, data beside the file and compression are not read: that is an error.
+//! Data beside the file and compression are not read: that is an error.
 
 mod accessor;
 mod scene;
@@ -81,9 +81,11 @@ pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<Shape, ReadErro
     welded(Shape::joined(parts, settings)?, settings)
 }
 
-/// Extensions that change nothing of what is taken.
+/// Extensions that change nothing of what is taken, and that of whole numbers as positions.
 fn is_known(name: &Value) -> bool {
-    name.as_str().is_some_and(|name| name.starts_with("KHR_materials_") || name == "KHR_texture_transform")
+    const LOOKS: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"];
+    let known = |name: &str| LOOKS.iter().any(|look| name.starts_with(look)) || name == "KHR_mesh_quantization";
+    name.as_str().is_some_and(known)
 }
 
 /// An error of the text.

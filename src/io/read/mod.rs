@@ -12,6 +12,7 @@ mod limits;
 mod load;
 mod obj;
 mod ply;
+mod polygon;
 mod settings;
 mod shape;
 mod stl;

@@ -1,15 +1,15 @@
 //! Wavefront OBJ: see the [writer](crate::io::write_obj).
 //!
-//! It takes v (with colours from 0 to 1 where these follow), vt, vn and f, whose polygons become
-//! fans; other statements of the format are skipped, and what is none is an error. Normals and
-//! texture coordinates are kept if all faces have them. A vertex is told of before the faces that
-//! use it.
+//! It takes v (with colours from 0 to 1 where these follow), vt, vn and f, polygons as triangles;
+//! other statements of the format are skipped, and what is none is an error. Normals and texture
+//! coordinates are kept if all faces have them. A vertex is told of before the faces that use it.
 
 use glam::{DVec3, Vec3};
 
 use super::ReadError;
 use super::error::{FilePlace, shown};
 use super::limits::Limits;
+use super::polygon::triangles;
 use super::shape::Shape;
 use super::text::number;
 
@@ -189,7 +189,10 @@ impl<'a> Object<'a> {
                 Some(index) if k < 3 && (0..count as i64).contains(&index) => corner[k] = index as u32,
                 _ => {
                     let what = ["vertex", "texture vertex", "normal"].get(k).unwrap_or(&"part of a corner");
-                    let expected = format!("a {what} from 1 to {count}, or from -1 to -{count}");
+                    let expected = match count {
+                        0 => format!("a {what} that is told of before, of which there is none"),
+                        _ => format!("a {what} from 1 to {count}, or from -1 to -{count}"),
+                    };
                     return Err(ReadError::content(FilePlace::Line(line), expected, shown(word)));
                 }
             }
@@ -210,16 +213,21 @@ impl<'a> Object<'a> {
         if corners.iter().any(|corner| corner[2] == NONE) {
             self.corner_normals = None;
         }
-        for side in corners[1..].windows(2) {
-            let fan = [corners[0], side[0], side[1]];
-            self.shape.triangles.push(fan.map(|corner| corner[0]));
-            if let Some(texture) = &mut self.corner_texture {
-                texture.push(fan.map(|corner| self.texture[corner[1] as usize]));
-            }
-            if let Some(normals) = &mut self.corner_normals {
-                normals.push(fan.map(|corner| self.normals[corner[2] as usize]));
-            }
-        }
+        let (positions, found) = (&self.shape.positions, &mut self.shape.triangles);
+        triangles(
+            corners.len(),
+            |place| positions[corners[place][0] as usize],
+            |places| {
+                let own = places.map(|place| corners[place]);
+                found.push(own.map(|corner| corner[0]));
+                if let Some(texture) = &mut self.corner_texture {
+                    texture.push(own.map(|corner| self.texture[corner[1] as usize]));
+                }
+                if let Some(normals) = &mut self.corner_normals {
+                    normals.push(own.map(|corner| self.normals[corner[2] as usize]));
+                }
+            },
+        );
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Of `vertex` it takes x, y, z, nx, ny, nz and red, green, blue, alpha; of `face` the list of
 //! vertices, colours and owner; of any type. Other elements and properties are skipped. Polygons
-//! become fans.
+//! become triangles: fans, where faces stand before the vertices.
 
 mod header;
 
@@ -13,6 +13,7 @@ use super::ReadError;
 use super::bytes::Bytes;
 use super::error::FilePlace;
 use super::limits::Limits;
+use super::polygon::triangles;
 use super::shape::Shape;
 use super::text::Words;
 
@@ -207,20 +208,22 @@ fn read_faces(
                 Kind::List { .. } => skip_property(property, values)?,
             }
         }
-        let &[first, _, _, ..] = &polygon[..] else {
+        if polygon.len() < 3 {
             let found = format!("{} vertices", polygon.len());
             return Err(ReadError::content(start, "a face of at least 3 vertices", found));
-        };
+        }
         settings.triangles(shape.triangles.len() + polygon.len() - 2)?;
-        for side in polygon[1..].windows(2) {
-            shape.triangles.push([first, side[0], side[1]]);
+        let (positions, found) = (&shape.positions, &mut shape.triangles);
+        let position = |place: usize| positions.get(polygon[place] as usize).copied().unwrap_or_default();
+        triangles(polygon.len(), position, |places| {
+            found.push(places.map(|place| polygon[place]));
             if has_colors {
                 colors.push([paint; 3]);
             }
             if has_owners {
                 owners.push(owner);
             }
-        }
+        });
     }
     shape.corner_colors = has_colors.then_some(colors);
     shape.owners = has_owners.then_some(owners);

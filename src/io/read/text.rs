@@ -24,8 +24,10 @@ impl<'a> Words<'a> {
 
     pub(super) fn next(&mut self) -> Option<&'a [u8]> {
         while let Some(byte) = self.data.get(self.at).filter(|byte| byte.is_ascii_whitespace()) {
-            self.line += u64::from(*byte == b'\n');
             self.at += 1;
+            // Some programs end lines by \r alone.
+            let is_end = *byte == b'\n' || *byte == b'\r' && self.data.get(self.at) != Some(&b'\n');
+            self.line += u64::from(is_end);
         }
         let rest = self.data.get(self.at..).filter(|rest| !rest.is_empty())?;
         let length = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
@@ -35,7 +37,7 @@ impl<'a> Words<'a> {
 
     pub(super) fn skip_line(&mut self) {
         let rest = self.data.get(self.at..).unwrap_or_default();
-        self.at += rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len());
+        self.at += rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(rest.len());
     }
 
     /// The next word, which must be there.

@@ -4,22 +4,23 @@
 //!   _rels/.rels               names the model
 //!   3D/3dmodel.model          unit; objects: meshes, or components, which are objects moved;
 //!                             items: the objects that are built, moved
+//!   3D/Objects/….model        more objects, where components and items say so by a path
 //! ```
 //!
-//! Taken are the items' meshes with colours of colour groups and base materials. Objects stand
-//! before the components that use them, as the format asks, so that nothing can hold itself. Parts
-//! of the production extension in other files are not read: that is an error.
+//! Taken are the items' meshes with colours of colour groups and base materials, those in other
+//! parts of the archive (the production extension) with them.
 
 mod model;
 
+use std::collections::HashMap;
 use std::io::{Cursor, Read};
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
 use zip::ZipArchive;
 
-use self::model::{Content, Model, Object, value};
+use self::model::{Content, Model, Object, Placed, value};
 use super::ReadError;
 use super::error::{FilePlace, shown};
 use super::limits::Limits;
@@ -43,12 +44,27 @@ pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<(Shape, LengthU
     let Some(text) = unpacked(&mut archive, &name, &mut left, settings)? else {
         return Err(ReadError::content(FilePlace::Byte(0), format!("an archive with {name}"), "none"));
     };
-    let model = Model::read(&text, &name, settings)?;
-    let mut parts = Parts { model: &model, settings, shapes: Vec::new(), triangles: 0, points: 0, visited: 0 };
-    for item in &model.items {
-        parts.push(item.object, item.map, 0)?;
+    let model = Model::read(&text, &name, true, settings)?;
+    drop(text);
+    let unit = model.unit;
+    let mut models = HashMap::from([(name.clone(), model)]);
+    let mut wanted = models[&name].parts();
+    while let Some(part) = wanted.pop() {
+        if models.contains_key(&part) {
+            continue;
+        }
+        let Some(text) = unpacked(&mut archive, &part, &mut left, settings)? else {
+            return Err(models[&name].wrong(&format!("an archive with {part}"), "none"));
+        };
+        let model = Model::read(&text, &part, false, settings)?;
+        wanted.extend(model.parts());
+        models.insert(part, model);
     }
-    Ok((Shape::joined(parts.shapes, settings)?, model.unit))
+    let mut parts = Parts { models: &models, settings, shapes: Vec::new(), triangles: 0, points: 0, visited: 0 };
+    for item in &models[&name].items {
+        parts.push(&name, item, DAffine3::IDENTITY, 0)?;
+    }
+    Ok((Shape::joined(parts.shapes, settings)?, unit))
 }
 
 /// A part of the archive as text; nothing if there is none.
@@ -75,6 +91,9 @@ fn unpacked(
         return Err(ReadError::Limit { what: "bytes", limit: settings.most_bytes, setting: "most_bytes" });
     };
     *left = rest;
+    if let Some(text) = utf16(&bytes) {
+        return Ok(Some(text));
+    }
     match String::from_utf8(bytes) {
         Ok(text) => Ok(Some(text)),
         Err(error) => {
@@ -83,6 +102,18 @@ fn unpacked(
             Err(ReadError::content(place, "text in UTF-8", "a byte that is none"))
         }
     }
+}
+
+/// Text in UTF-16, which begins with a mark of the order of its bytes; nothing of other text.
+fn utf16(bytes: &[u8]) -> Option<String> {
+    let (mark, rest) = bytes.split_first_chunk::<2>()?;
+    let unit = match mark {
+        [0xff, 0xfe] => u16::from_le_bytes,
+        [0xfe, 0xff] => u16::from_be_bytes,
+        _ => return None,
+    };
+    let (units, []) = rest.as_chunks::<2>() else { return None };
+    String::from_utf16(&units.iter().map(|pair| unit(*pair)).collect::<Vec<u16>>()).ok()
 }
 
 /// The part that is the model.
@@ -108,7 +139,7 @@ const FREE: usize = 1000;
 
 /// The items, written out.
 struct Parts<'a> {
-    model: &'a Model,
+    models: &'a HashMap<String, Model>,
     settings: &'a Limits<'a>,
     shapes: Vec<Shape>,
     triangles: usize,
@@ -118,15 +149,23 @@ struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    fn push(&mut self, id: u32, map: DAffine3, depth: usize) -> Result<(), ReadError> {
+    /// An object that a part of the archive places, in a place.
+    fn push(&mut self, part: &str, placed: &Placed, above: DAffine3, depth: usize) -> Result<(), ReadError> {
+        let (id, mut map) = (placed.object, above * placed.map);
+        let from = &self.models[part];
+        let part = placed.part.as_deref().unwrap_or(part);
+        let model = &self.models[part];
+        if model.unit != from.unit {
+            map *= DAffine3::from_scale(DVec3::splat(model.unit.meters() / from.unit.meters()));
+        }
         // A few objects without a mesh may stand for any number of themselves.
         self.visited += 1;
         self.settings.points(self.visited.saturating_sub(FREE).saturating_mul(LEAST_POINTS))?;
-        let Some(object) = self.model.objects.get(&id) else {
-            return Err(self.model.wrong("an object that is there", format!("object {id}")));
+        let Some(object) = model.objects.get(&id) else {
+            return Err(model.wrong("an object that is there", format!("object {id}")));
         };
         if depth > DEEPEST {
-            return Err(self.model.wrong(&format!("components at most {DEEPEST} deep"), "more"));
+            return Err(model.wrong(&format!("components at most {DEEPEST} deep"), "more"));
         }
         let Object { content, .. } = object;
         match content {
@@ -141,7 +180,7 @@ impl Parts<'_> {
             }
             Content::Components(components) => {
                 for component in components {
-                    self.push(component.object, map * component.map, depth + 1)?;
+                    self.push(part, component, map, depth + 1)?;
                 }
                 Ok(())
             }

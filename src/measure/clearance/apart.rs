@@ -17,7 +17,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rvachev_field::{Approach, Patches};
+use rvachev_field::{Approach, Patches, Zone};
 
 use super::levels::Levels;
 use super::piece::Piece;
@@ -85,9 +85,13 @@ struct Search<'a> {
 pub(super) fn search(from: &Side<'_>, to: &Side<'_>, run: &Run) -> Result<Found, Cancelled> {
     let mut search = Search::new(from, to);
     let [to_open, to_divide] = run.stages([0.4, 0.6]);
-    let near = search.near(&to_open)?;
-    search.divide(near, &to_divide)?;
-    search.learn(0.0);
+    if search.touch() {
+        (search.least, search.leans) = (0.0, true);
+    } else {
+        let near = search.near(&to_open)?;
+        search.divide(near, &to_divide)?;
+        search.learn(0.0);
+    }
     let (distance, loss) = (search.known(), search.loss());
     let Search { points, least, leans, within, slack, .. } = search;
     let common = within.and_then(|p| common(from, to, slack, p));
@@ -114,6 +118,11 @@ impl<'a> Search<'a> {
 
     fn known(&self) -> f64 {
         self.points[0].distance(self.points[1])
+    }
+
+    /// Whether they touch, or cross each other, at the points that are known.
+    fn touch(&self) -> bool {
+        self.known() <= self.slack
     }
 
     /// How much nearer others may be without being looked for.
@@ -198,7 +207,13 @@ impl<'a> Search<'a> {
                 let (centre, radius) = ball(runs.bounds(*block));
                 let by_value = || -self.to.program.value(centre) - radius - self.from.fineness();
                 let by_value = if self.is_gentle { by_value() } else { f64::NEG_INFINITY };
-                self.place(enough, centre, by_value, || distance(others, centre) - radius)
+                self.place(enough, centre, by_value, || {
+                    let by_ball = distance(others, centre) - radius;
+                    let is_enough = by_ball - self.slack >= enough;
+                    let zone = || Zone::of_bounds(runs.bounds(*block));
+                    let by_box = if is_enough { None } else { others.apart(&zone(), enough + self.slack) };
+                    by_box.unwrap_or(by_ball)
+                })
             };
             let mut places: Vec<Place> = Vec::with_capacity(blocks.len());
             for some in levels.chunks(&blocks, 16 * AT_ONCE) {
@@ -266,8 +281,7 @@ impl<'a> Search<'a> {
                     }
                 }
             }
-            if self.known() <= self.slack {
-                // They touch, or cross each other.
+            if self.touch() {
                 (self.least, self.leans) = (0.0, true);
                 break;
             }

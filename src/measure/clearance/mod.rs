@@ -7,7 +7,6 @@
 
 mod apart;
 mod doubts;
-mod exact;
 mod levels;
 mod missed;
 mod overlap;
@@ -20,6 +19,7 @@ use self::apart::{Found, search};
 use self::doubts::Known;
 use self::missed::{Inside, inside};
 use self::overlap::{Entry, common, depth, entry, within};
+use super::exact;
 use super::integral::integral;
 use crate::distance::{compiled_with, surface_with};
 use crate::error::PrepareError;
@@ -114,8 +114,8 @@ impl Solid {
     /// Each surface takes as long as a mesh, once: solids that are moved or turned have that of the
     /// solid at rest, so that parts of an assembly are not measured anew in each position. After
     /// that a clearance takes milliseconds where one place is nearest and of meshes and extruded
-    /// polygons, some tenths of a second where a gap is even all over, and seconds between threads
-    /// and the like. The volume of an
+    /// polygons, some tenths of a second where a gap is even all over and where meshes touch over
+    /// thousands of triangles or overlap, and seconds between threads and the like. The volume of an
     /// overlap is found as by [`measure`](Solid::measure).
     ///
     /// # Errors

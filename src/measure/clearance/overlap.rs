@@ -12,6 +12,7 @@ use std::ops::{ControlFlow, Range};
 
 use glam::DVec3;
 use rayon::prelude::*;
+use rvachev_field::Zone;
 
 use super::apart::ball;
 use super::levels::Levels;
@@ -41,6 +42,9 @@ const RELATIVE: f64 = 0.01;
 /// So many patches that follow each other are looked at together at first.
 const SPAN: usize = 64;
 
+/// More of them are not compared at once.
+const TOGETHER: usize = 512;
+
 /// What is found of one surface and another solid.
 pub(super) enum Entry {
     /// A point of both solids, just below the surface.
@@ -61,8 +65,45 @@ pub(super) fn common(from: &Side<'_>, to: &Side<'_>, slack: f64, p: DVec3) -> Op
     inner.into_iter().find(is_common)
 }
 
-/// The patches of `from` that may be in the other solid or at its surface, or a point of both.
-fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<Vec<usize>, DVec3>, Cancelled> {
+/// Whether a piece of `from` that is moved along its normal by this is outside of the other solid:
+/// then no point of it is deeper in that.
+fn is_outside(piece: &Piece, from: &Side<'_>, to: &Side<'_>, by: f64) -> bool {
+    let (patches, others) = (&from.surface.patches, &to.surface.patches);
+    let moved = piece.moved(by);
+    let rounding = piece.off(patches) + from.fineness() + to.fineness();
+    // What meets no triangle is on one side of them.
+    if to.is_known && others.is_beyond(moved, rounding) == Some(true) {
+        return to.program.value(moved.iter().sum::<DVec3>() / 3.0) <= 0.0;
+    }
+    let zone = piece.zone(patches, by * piece.normal());
+    let [x, y, z] = zone.hull();
+    let hull = Bounds::new(DVec3::new(x.lo(), y.lo(), z.lo()), DVec3::new(x.hi(), y.hi(), z.hi()));
+    !hull.intersects(&others.bounds().inflate(by.abs())) || to.program.range_zone(&zone).hi() <= 0.0
+}
+
+/// The same of patches that follow each other, of which there are not too many, or whether they are
+/// inside: where these are flat, one look tells of all. Nothing if it does not.
+fn span_outside(span: Range<usize>, from: &Side<'_>, to: &Side<'_>, by: f64) -> Option<bool> {
+    if span.len() > TOGETHER || !to.is_known {
+        return None;
+    }
+    if span.len() == 1 {
+        return is_outside(&Piece::whole(&from.surface.patches, span.start), from, to, by).then_some(true);
+    }
+    let zone = Piece::span_moved(&from.surface.patches, span, by);
+    to.surface.patches.apart(&zone, from.fineness() + to.fineness())?;
+    Some(to.program.value(zone.centre) <= 0.0)
+}
+
+/// The patches of `from` that may be in the other solid or at its surface, or a point of both;
+/// without those that are outside when they are moved along their normals by this.
+fn near(
+    from: &Side<'_>,
+    to: &Side<'_>,
+    slack: f64,
+    by: Option<f64>,
+    run: &Run,
+) -> Result<Result<Vec<usize>, DVec3>, Cancelled> {
     let (runs, patches, others) = (from.surface.runs(), &from.surface.patches, &to.surface.patches);
     let bounds = others.bounds().inflate(slack);
     let mut blocks: Vec<Block> = runs.all().into_iter().collect();
@@ -75,10 +116,14 @@ fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<
             if !runs.bounds(*block).inflate(slack).intersects(&bounds) {
                 return ControlFlow::Continue(None);
             }
-            if distance(others, centre) <= radius + 2.0 * slack {
-                return ControlFlow::Continue(Some(*block));
-            }
-            if to.program.value(centre) <= 0.0 {
+            let is_far = || others.apart(&Zone::of_bounds(runs.bounds(*block)), 2.0 * slack).is_some();
+            if distance(others, centre) <= radius + 2.0 * slack && !is_far() {
+                match by.and_then(|by| span_outside(runs.patches(*block), from, to, by)) {
+                    Some(true) => return ControlFlow::Continue(None),
+                    Some(false) => {}
+                    None => return ControlFlow::Continue(Some(*block)),
+                }
+            } else if to.program.value(centre) <= 0.0 {
                 return ControlFlow::Continue(None);
             }
             let own = patches.point(runs.patches(*block).start, [0.0; 2]);
@@ -106,7 +151,7 @@ fn near(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Result<
 /// other: of each patch the middle tells.
 pub(super) fn within(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Entry, Cancelled> {
     let [to_open, to_look] = run.stages([0.5, 0.5]);
-    let patches = match near(from, to, slack, &to_open)? {
+    let patches = match near(from, to, slack, None, &to_open)? {
         Ok(near) => near,
         Err(point) => return Ok(Entry::At(point)),
     };
@@ -148,10 +193,7 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         if distance(others, middle) > most && to.program.value(middle) <= 0.0 {
             return ControlFlow::Continue(None);
         }
-        let zone = piece.zone(patches, -slack * piece.normal());
-        let [x, y, z] = zone.hull();
-        let hull = Bounds::new(DVec3::new(x.lo(), y.lo(), z.lo()), DVec3::new(x.hi(), y.hi(), z.hi()));
-        if !hull.intersects(&bounds) || to.program.range_zone(&zone).hi() <= 0.0 {
+        if is_outside(piece, from, to, -slack) {
             return ControlFlow::Continue(None);
         }
         match [middle].into_iter().chain(piece.points).find_map(|p| common(from, to, slack, p)) {
@@ -160,7 +202,7 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         }
     };
     let [to_open, to_divide] = run.stages([0.4, 0.6]);
-    let near = match near(from, to, slack, &to_open)? {
+    let near = match near(from, to, slack, Some(-slack), &to_open)? {
         Ok(near) => near,
         Err(point) => return Ok(Entry::At(point)),
     };
@@ -215,7 +257,12 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         let look = |span: &Range<usize>| {
             let at = patches.point((span.start + span.end) / 2, [0.0; 2]);
             let reach = span.clone().map(|n| Piece::whole(patches, n).reach_from(at)).fold(0.0, f64::max);
-            bounds.inflate(reach).contains(at).then(|| (below(at), reach))
+            if !bounds.inflate(reach).contains(at) {
+                return None;
+            }
+            let deep = below(at);
+            let is_out = || deep <= slack && span_outside(span.clone(), from, to, slack) == Some(true);
+            (deep + reach > slack && !is_out()).then_some((deep, reach))
         };
         let mut found = Vec::with_capacity(near.len());
         for chunk in levels.chunks(&near, AT_ONCE) {
@@ -253,10 +300,8 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         };
         // What is outside when it is moved outwards by what does not count is no deeper than that:
         // of faces that fall together it is told so.
-        let is_out = |piece: &Piece| {
-            piece.numbers.iter().all(|deep| *deep <= slack)
-                && to.program.range_zone(&piece.zone(patches, slack * piece.normal())).hi() <= 0.0
-        };
+        let is_out =
+            |piece: &Piece| piece.numbers.iter().all(|deep| *deep <= slack) && is_outside(piece, from, to, slack);
         run.check()?;
         pieces = pieces.into_par_iter().filter(|piece| at_most(piece) > enough && !is_out(piece)).collect();
         asked += 4 * pieces.len();

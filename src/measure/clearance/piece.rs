@@ -1,7 +1,11 @@
 //! Parts of the patches of a surface, divided into four at a time.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 use rvachev_field::{Patches, Zone};
+
+use crate::Bounds;
 
 /// A part of a patch: its corners in the patch's coordinates, where they are, and a number that is
 /// known of each.
@@ -15,6 +19,9 @@ pub(super) struct Piece {
 
 /// The corners of a patch in its coordinates.
 const CORNERS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+
+/// How far what is moved is drawn in from its sides, as a part of how far it goes.
+const ASIDE: f64 = 0.6;
 
 impl Piece {
     /// A whole patch, with 0 at its corners.
@@ -62,6 +69,9 @@ impl Piece {
     /// How far it is off its triangle at most: a patch is quadratic, so that it is four thirds of
     /// how far it is in the middle of a side.
     pub(super) fn off(&self, patches: &Patches) -> f64 {
+        if patches.is_flat() {
+            return 0.0;
+        }
         let middles = self.middles(patches);
         let off = |k: usize| middles[k].1.distance(0.5 * (self.points[k] + self.points[(k + 1) % 3]));
         4.0 / 3.0 * (0..3).map(off).fold(0.0, f64::max)
@@ -76,6 +86,49 @@ impl Piece {
     /// No point of it is farther from its middle.
     pub(super) fn reach(&self, patches: &Patches) -> f64 {
         self.longest_side() / 3f64.sqrt() + self.off(patches)
+    }
+
+    /// Its triangle, moved along its normal and drawn in from its sides: each point of it goes no
+    /// farther than this.
+    ///
+    /// ```text
+    ///      .-------------.      What is at the sides of a surface meets what the surface touches beside
+    ///       \ .-------. /       it, and has to keep off that too.
+    /// ```
+    pub(super) fn moved(&self, by: f64) -> [DVec3; 3] {
+        let [a, b, c] = self.points;
+        let sides = [b.distance(c), c.distance(a), a.distance(b)];
+        // The middle of the circle within.
+        let weights = sides.map(|side| side / sides.iter().sum::<f64>().max(f64::MIN_POSITIVE));
+        let middle = weights[0] * a + weights[1] * b + weights[2] * c;
+        let reach = self.points.iter().fold(0.0, |most, p| middle.distance(*p).max(most));
+        let part = if reach > 0.0 { (ASIDE * by.abs() / reach).min(1.0) } else { 0.0 };
+        let along = (1.0 - ASIDE * ASIDE).sqrt() * by * self.normal();
+        self.points.map(|p| p.lerp(middle, part) + along)
+    }
+
+    /// A zone that holds some patches, moved along their common normal and drawn in from its sides
+    /// as a triangle [is](Piece::moved): of each of their points it holds one that is no farther
+    /// away than this.
+    pub(super) fn span_moved(patches: &Patches, span: Range<usize>, by: f64) -> Zone {
+        let whole = || span.clone().map(|n| Piece::whole(patches, n));
+        let area = |piece: &Piece| {
+            let [a, b, c] = piece.points;
+            (b - a).cross(c - a)
+        };
+        let normal = whole().map(|piece| area(&piece)).sum::<DVec3>().try_normalize().unwrap_or(DVec3::Z);
+        let (u, v) = normal.any_orthonormal_pair();
+        let frame = DMat3::from_cols(u, v, normal);
+        let inwards = frame.transpose();
+        let mut bounds = Bounds::EMPTY;
+        for piece in whole() {
+            bounds = bounds.union(&Bounds::from_points(piece.points.map(|p| inwards * p)).inflate(piece.off(patches)));
+        }
+        let half = bounds.half_extents();
+        let aside = ASIDE * by.abs() / 2f64.sqrt();
+        let half = DVec3::new((half.x - aside).max(0.0), (half.y - aside).max(0.0), half.z);
+        let along = (1.0 - ASIDE * ASIDE).sqrt() * by * normal;
+        Zone::of_frame(frame * bounds.center() + along, frame * DMat3::from_diagonal(half))
     }
 
     pub(super) fn middle(&self) -> DVec3 {

@@ -98,3 +98,115 @@ fn points_without_coordinates_are_counted_and_can_be_left_out() {
     let message = PointCloud::new(vec![DVec3::X, DVec3::NAN, DVec3::INFINITY]).unwrap_err().to_string();
     assert!(message.contains("point 1") && message.contains("2 of the points"), "{message}");
 }
+
+/// A 3MF archive of parts by their names.
+fn archive(parts: &[(&str, &str)]) -> Vec<u8> {
+    use std::io::{Cursor, Write};
+    let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, text) in parts {
+        writer.start_file(*name, zip::write::SimpleFileOptions::default()).expect("a part");
+        writer.write_all(text.as_bytes()).expect("a part");
+    }
+    writer.finish().expect("an archive").into_inner()
+}
+
+#[test]
+fn objects_of_3mf_in_other_parts_are_read() {
+    let tetrahedron = "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>\
+        <vertex x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"6\"/></vertices><triangles>\
+        <triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/>\
+        <triangle v1=\"2\" v2=\"0\" v3=\"3\"/></triangles></mesh>";
+    let main = |unit: &str| {
+        format!(
+            "<model unit=\"{unit}\"><resources><object id=\"1\"><components>\
+             <component p:path=\"/3D/own.model\" objectid=\"7\" transform=\"1 0 0 0 1 0 0 0 1 100 0 0\"/>\
+             </components></object></resources><build><item objectid=\"1\"/>\
+             <item p:path=\"/3D/own.model\" objectid=\"1\"/></build></model>"
+        )
+    };
+    // Its own objects by their numbers, and its own unit.
+    let own = format!(
+        "<model unit=\"centimeter\"><resources><object id=\"1\">{tetrahedron}</object><object id=\"7\"><components>\
+         <component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 3 0 0\"/></components></object></resources></model>"
+    );
+    for (unit, far) in [("centimeter", 1040.0), ("millimeter", 140.0)] {
+        let mesh = read(FileFormat::ThreeMf, &archive(&[("3D/3dmodel.model", &main(unit)), ("3D/own.model", &own)]));
+        assert!((mesh.volume() - 2000.0).abs() < 1e-3, "{unit}: {}", mesh.volume());
+        assert!((mesh.bounds().max.x - far).abs() < 1e-3, "{unit}: {:?}", mesh.bounds());
+    }
+    let message = error(FileFormat::ThreeMf, &archive(&[("3D/3dmodel.model", &main("inch"))]));
+    assert!(message.contains("expected an archive with 3D/own.model"), "{message}");
+    // Parts that want each other, and an object that holds itself by way of another part.
+    let ring = |of: &str| {
+        format!(
+            "<model><resources><object id=\"1\"><components><component p:path=\"/3D/{of}.model\" objectid=\"1\"/>\
+             </components></object></resources><build><item objectid=\"1\"/></build></model>"
+        )
+    };
+    let message =
+        error(FileFormat::ThreeMf, &archive(&[("3D/3dmodel.model", &ring("b")), ("3D/b.model", &ring("3dmodel"))]));
+    assert!(message.contains("deep"), "{message}");
+}
+
+#[test]
+fn polygons_that_are_not_convex_become_triangles_within_them() {
+    let section = [[0, 0], [3, 0], [3, 1], [1, 1], [1, 3], [0, 3]];
+    for first in 0..6 {
+        let corner = |k: usize| section[(k + first) % 6];
+        let vertices: String = (0..12).map(|k| format!("{} {} {}\n", corner(k)[0], corner(k)[1], k / 6)).collect();
+        let mut faces = vec![(0..6).rev().collect::<Vec<usize>>(), (6..12).collect()];
+        faces.extend((0..6).map(|k| vec![k, (k + 1) % 6, (k + 1) % 6 + 6, k + 6]));
+        let mut obj = String::new();
+        vertices.lines().for_each(|line| obj += &format!("v {line}\n"));
+        let mut ply = "ply\nformat ascii 1.0\nelement vertex 12\nproperty float x\nproperty float y\nproperty float z\n\
+            element face 8\nproperty list uchar int vertex_indices\nend_header\n"
+            .to_string() + &vertices;
+        for face in &faces {
+            let words = |by: usize| face.iter().map(|v| format!(" {}", v + by)).collect::<String>();
+            obj += &format!("f{}\n", words(1));
+            ply += &format!("{}{}\n", face.len(), words(0));
+        }
+        for (format, text) in [(FileFormat::Obj, obj), (FileFormat::Ply, ply)] {
+            let mesh = read(format, text.as_bytes());
+            assert_eq!((mesh.volume(), mesh.area()), (5.0, 22.0), "{format:?} from {first}");
+            assert!(mesh.check().is_sound(), "{format:?} from {first}");
+        }
+    }
+}
+
+#[test]
+fn lines_end_as_old_programs_end_them() {
+    let whole = String::from_utf8(bytes(|out| write_stl_ascii(&part(), out))).expect("text");
+    for end in ["\r", "\r\n"] {
+        let found = read(FileFormat::Stl, whole.replace('\n', end).as_bytes());
+        assert_eq!(found.triangles().len(), part().triangles().len());
+        let cut = whole[..whole.len() / 2].replace('\n', end);
+        let line = whole[..whole.len() / 2].lines().count();
+        let message = error(FileFormat::Stl, cut.as_bytes());
+        assert!(message.starts_with(&format!("line {line}: ")), "{message}");
+    }
+}
+
+#[test]
+fn sparse_elements_are_those_of_the_accessor() {
+    let corpus = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/corpus/import/sparse_box.glb");
+    let whole = std::fs::read(corpus).expect("a file");
+    let changed = |from: &str, to: &str| {
+        let at = whole.windows(from.len()).position(|part| part == from.as_bytes()).expect("it is there");
+        let mut bytes = whole.clone();
+        bytes[at..at + from.len()].copy_from_slice(to.as_bytes());
+        error(FileFormat::Glb, &bytes)
+    };
+    let message = changed("\"sparse\": {\"count\": 2", "\"sparse\": {\"count\": 9");
+    assert!(message.contains("as many sparse elements as there are bytes for"), "{message}");
+    let message = changed("\"componentType\": 5123}, \"values\"", "\"componentType\": 5126}, \"values\"");
+    assert!(message.contains("indices without sign in sparse"), "{message}");
+    // Their numbers, which rise.
+    let at = whole.windows(4).rposition(|part| part == [3, 0, 5, 0]).expect("they are there");
+    for numbers in [[5, 0, 3, 0], [3, 0, 8, 0]] {
+        let mut bytes = whole.clone();
+        bytes[at..at + 4].copy_from_slice(&numbers);
+        let message = error(FileFormat::Glb, &bytes);
+        assert!(message.contains("sparse indices that rise, below the count"), "{message}");
+    }
+}

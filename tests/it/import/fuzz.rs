@@ -16,7 +16,7 @@ use crate::battery::seeds;
 use crate::support::Random;
 
 /// Words that formats have a meaning for, and numbers at the ends of their ranges.
-const WORDS: [&[u8]; 27] = [
+const WORDS: [&[u8]; 28] = [
     b"-1",
     b"4294967295",
     b"99999999999999999999",
@@ -42,6 +42,7 @@ const WORDS: [&[u8]; 27] = [
     b"</object>",
     b"<item objectid=\"2\"/>",
     b"<component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 6 7\"/>",
+    b"<component p:path=\"/3D/3dmodel.model\" objectid=\"1\"/>",
     b"&#x110000;",
     b"<!--",
 ];

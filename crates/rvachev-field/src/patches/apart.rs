@@ -27,6 +27,8 @@ struct Seen {
     centre: DVec3,
     axes: DMat3,
     slack: DVec3,
+    /// The unit normals of its sides, of zones that are not along the axes.
+    normals: [DVec3; 3],
 }
 
 impl Seen {
@@ -35,10 +37,24 @@ impl Seen {
         (low - self.high).max(self.low - high).max(DVec3::ZERO).length()
     }
 
+    /// How far a triangle is beyond one of the sides.
+    fn side_gap(&self, corners: [DVec3; 3]) -> f64 {
+        let gap = |normal: DVec3| {
+            let heights = corners.map(|p| normal.dot(p - self.centre));
+            let [low, high] = [f64::min, f64::max].map(|pick| pick(pick(heights[0], heights[1]), heights[2]));
+            low.max(-high) - self.reach(normal)
+        };
+        self.normals.into_iter().map(gap).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// How far it reaches from its centre along a direction.
+    fn reach(&self, normal: DVec3) -> f64 {
+        (self.axes.transpose() * normal).abs().element_sum() + normal.abs().dot(self.slack)
+    }
+
     /// How far the plane through a point is, given its unit normal.
     fn plane_gap(&self, point: DVec3, normal: DVec3) -> f64 {
-        let reach = (self.axes.transpose() * normal).abs().element_sum() + normal.abs().dot(self.slack);
-        (normal.dot(point - self.centre)).abs() - reach
+        (normal.dot(point - self.centre)).abs() - self.reach(normal)
     }
 }
 
@@ -46,12 +62,16 @@ impl Patches {
     fn seen(&self, zone: &Zone) -> Seen {
         let unit = self.frame.unit;
         let [x, y, z] = zone.hull();
+        let [a, b, c] = [zone.axes.x_axis, zone.axes.y_axis, zone.axes.z_axis];
+        // Of a flat zone one is left, of others none is needed.
+        let normals = if zone.is_aligned() { [DVec3::ZERO; 3] } else { [b.cross(c), c.cross(a), a.cross(b)] };
         Seen {
             low: self.frame.into_local(DVec3::new(x.lo(), y.lo(), z.lo())),
             high: self.frame.into_local(DVec3::new(x.hi(), y.hi(), z.hi())),
             centre: self.frame.into_local(zone.centre),
             axes: zone.axes * (1.0 / unit),
             slack: zone.slack / unit,
+            normals: normals.map(DVec3::normalize_or_zero),
         }
     }
 
@@ -85,7 +105,7 @@ impl Patches {
 
     /// A distance above `least` that all points of a zone are from all patches; nothing where there
     /// is none, or it is not found soon.
-    pub(super) fn apart(&self, zone: &Zone, least: f64) -> Option<f64> {
+    pub fn apart(&self, zone: &Zone, least: f64) -> Option<f64> {
         let (seen, unit) = (self.seen(zone), self.frame.unit);
         let least = least / unit;
         let mut nearest = f64::INFINITY;
@@ -127,6 +147,7 @@ impl Patches {
         let (b, c) = (a + e, a + f);
         let normal = e.cross(f).try_normalize();
         let beside = normal.map_or(0.0, |normal| seen.plane_gap(a, normal));
-        beside.max(seen.box_gap(a.min(b).min(c), a.max(b).max(c))) - f64::from(face.sag)
+        let gap = beside.max(seen.box_gap(a.min(b).min(c), a.max(b).max(c)));
+        gap.max(seen.side_gap([a, b, c])) - f64::from(face.sag)
     }
 }

@@ -30,9 +30,24 @@ impl Patches {
     /// Where a triangle is nearest to the patches; nothing if some of them are curved, or there are
     /// none.
     pub fn approach(&self, triangle: [DVec3; 3]) -> Option<Approach> {
+        self.approach_within(triangle, f64::INFINITY)
+    }
+
+    /// Whether no point of a triangle is within a length of the patches; nothing if some of them
+    /// are curved.
+    pub fn is_beyond(&self, triangle: [DVec3; 3], length: f64) -> Option<bool> {
+        if !self.quadratics.is_empty() {
+            return None;
+        }
+        Some(self.approach_within(triangle, length).is_none())
+    }
+
+    /// Where a triangle is nearest to the patches, if that is within a length.
+    fn approach_within(&self, triangle: [DVec3; 3], length: f64) -> Option<Approach> {
         if self.is_empty() || !self.quadratics.is_empty() {
             return None;
         }
+        let most = (length / self.frame.unit).powi(2);
         let own = triangle.map(|p| self.frame.into_local(p));
         let (low, high) = hull(own);
         let gap = |from: DVec3, to: DVec3| (from - high).max(low - to).max(DVec3::ZERO).length_squared();
@@ -40,7 +55,7 @@ impl Patches {
             let node = &self.nodes[at as usize];
             gap(double(node.low), double(node.high))
         };
-        let (mut least, mut point) = (f64::INFINITY, own[0]);
+        let (mut least, mut point) = (most, own[0]);
         let mut stack = [(0, 0.0); DEEPEST + 1];
         let mut height = 1;
         while height > 0 {
@@ -70,7 +85,8 @@ impl Patches {
                 }
             }
         }
-        Some(Approach { distance: least.sqrt() * self.frame.unit, point: self.frame.outward(point) })
+        let found = Approach { distance: least.sqrt() * self.frame.unit, point: self.frame.outward(point) };
+        (least < most).then_some(found)
     }
 }
 
@@ -173,6 +189,10 @@ mod tests {
             let patches = Patches::new(&others, &Run::default()).unwrap();
             let own = numbers.triangle(size);
             let found = patches.approach(own).unwrap();
+            for (part, beyond) in [(0.999, true), (1.001, false)] {
+                let told = patches.is_beyond(own, part * found.distance + 1e-9);
+                assert!(found.distance == 0.0 || told == Some(beyond), "{round}: {found:?}");
+            }
             assert!((patches.nearest(found.point).unwrap().distance - found.distance).abs() < 1e-6, "{found:?}");
             // No point of it is nearer, and about the nearest one it is as near as is said.
             const STEPS: usize = 40;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::SurfaceDistance;
 use super::tests::{Random, built, cuboid, sphere};
@@ -137,6 +137,34 @@ fn ranges_hold_samples() {
                 assert!(range.contains(value), "{value} not in {range:?}");
             }
         }
+    }
+}
+
+#[test]
+fn ranges_over_turned_zones_hold_samples_and_see_their_sides() {
+    let mut random = Random(11);
+    for field in [ball(4), slab(DVec3::new(0.5, 0.25, 0.75))] {
+        for round in 0..300 {
+            let size = 0.5 * random.next();
+            let mut axes = DMat3::from_cols(random.point(size), random.point(size), random.point(size));
+            if round % 2 == 0 {
+                axes.z_axis = DVec3::ZERO;
+            }
+            let zone = Zone::of_frame(random.point(1.5), axes).inflated(0.01 * random.next());
+            let range = field.range(&zone);
+            for _ in 0..20 {
+                let p = zone.centre + axes * random.point(1.0);
+                assert!(range.contains(AnyField::value(&field, p.to_array())), "{p} not in {range:?}");
+            }
+        }
+    }
+    // A plate across an edge: no plane of the surface is between them, nor one along the axes.
+    let half = 0.5 * DVec3::ONE;
+    let normal = DVec3::new(1.0, 0.0, 1.0).normalize();
+    for (away, is_apart) in [(0.02, true), (-0.02, false)] {
+        let axes = DMat3::from_cols(normal.cross(DVec3::Y), DVec3::Y, DVec3::ZERO);
+        let zone = Zone::of_frame(DVec3::new(0.5, 0.0, 0.5) + away * normal, axes);
+        assert_eq!(slab(half).range(&zone).hi() < 0.0, is_apart, "{away}");
     }
 }
 

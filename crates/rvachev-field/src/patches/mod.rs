@@ -222,6 +222,11 @@ impl Patches {
         self.frame.outward(self.point_and_normal(at, s, t).0)
     }
 
+    /// Whether they are flat triangles, all of them.
+    pub fn is_flat(&self) -> bool {
+        self.quadratics.is_empty()
+    }
+
     /// How many patches there are.
     pub fn len(&self) -> usize {
         self.faces.len()

@@ -25,6 +25,18 @@ enum Component {
 }
 
 impl Component {
+    fn of(number: &Value) -> Option<Component> {
+        Some(match number.as_u64()? {
+            5120 => Component::I8,
+            5121 => Component::U8,
+            5122 => Component::I16,
+            5123 => Component::U16,
+            5125 => Component::U32,
+            5126 => Component::F32,
+            _ => return None,
+        })
+    }
+
     fn bytes(self) -> usize {
         match self {
             Component::I8 | Component::U8 => 1,
@@ -58,6 +70,14 @@ impl Component {
     }
 }
 
+/// Elements of an accessor that others stand for.
+struct Sparse<'a> {
+    /// Their numbers, which rise.
+    numbers: Vec<usize>,
+    /// What stands for them, one after the other.
+    bytes: &'a [u8],
+}
+
 /// An accessor whose bytes are there.
 struct Elements<'a> {
     bytes: &'a [u8],
@@ -67,15 +87,26 @@ struct Elements<'a> {
     stride: usize,
     count: usize,
     is_normalized: bool,
+    sparse: Option<Sparse<'a>>,
 }
 
 impl Elements<'_> {
     /// A component of an element.
     fn at(&self, element: usize, k: usize) -> f64 {
-        let from = element * self.stride + k * self.component.bytes();
-        let value = self.component.read(self.bytes.get(from..).unwrap_or_default());
+        let size = self.component.bytes();
+        let instead = self.sparse.as_ref().and_then(|sparse| {
+            let place = sparse.numbers.binary_search(&element).ok()?;
+            sparse.bytes.get((place * self.width + k) * size..)
+        });
+        let own = || self.bytes.get(element * self.stride + k * size..).unwrap_or_default();
+        let value = self.component.read(instead.unwrap_or_else(own));
         if self.is_normalized { (value / self.component.full()).max(-1.0) } else { value }
     }
+}
+
+/// A whole number, 0 if there is none.
+fn place(value: &Value) -> usize {
+    value.as_u64().map_or(0, |x| usize::try_from(x).unwrap_or(usize::MAX))
 }
 
 impl<'a> Data<'a> {
@@ -89,17 +120,8 @@ impl<'a> Data<'a> {
         };
         let error =
             |expected: &str, found: &Value| Err(wrong(&format!("accessor {number}: {expected}"), found.to_string()));
-        if !it["sparse"].is_null() {
-            return error("one that is not sparse", &it["sparse"]);
-        }
-        let component = match it["componentType"].as_u64() {
-            Some(5120) => Component::I8,
-            Some(5121) => Component::U8,
-            Some(5122) => Component::I16,
-            Some(5123) => Component::U16,
-            Some(5125) => Component::U32,
-            Some(5126) => Component::F32,
-            _ => return error("a componentType of glTF", &it["componentType"]),
+        let Some(component) = Component::of(&it["componentType"]) else {
+            return error("a componentType of glTF", &it["componentType"]);
         };
         let width = match it["type"].as_str() {
             Some("SCALAR") => 1,
@@ -111,30 +133,78 @@ impl<'a> Data<'a> {
         let Some(count) = it["count"].as_u64().and_then(|count| usize::try_from(count).ok()) else {
             return error("a count", &it["count"]);
         };
-        let view = it["bufferView"].as_u64().and_then(|view| self.json["bufferViews"].get(view as usize));
-        let Some(view) = view else { return error("a bufferView that is there", &it["bufferView"]) };
-        if view["buffer"].as_u64() != Some(0) || !self.json["buffers"][0]["uri"].is_null() {
-            return error("data in the file itself", &view["buffer"]);
-        }
-        let place = |value: &Value| value.as_u64().map_or(0, |x| usize::try_from(x).unwrap_or(usize::MAX));
+        let view = match self.view(it) {
+            Ok(view) => view,
+            Err((expected, found)) => return error(expected, found),
+        };
         let bytes = component.bytes() * width;
         let stride = place(&view["byteStride"]).max(bytes);
-        let (from, length) = (place(&view["byteOffset"]), place(&view["byteLength"]));
-        let view = from.checked_add(length).and_then(|end| self.binary.get(from..end));
-        let inner = view.and_then(|view| view.get(place(&it["byteOffset"])..));
+        let inner = self.inner(view, it);
         let needed = count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(bytes));
         match (inner, needed) {
             // So nothing is larger than what is there.
             (Some(inner), Some(needed)) if needed <= inner.len() => {
                 settings.points(count / 3)?;
                 let is_normalized = it["normalized"].as_bool().unwrap_or(false);
-                Ok(Some(Elements { bytes: inner, component, width, stride, count, is_normalized }))
+                let sparse = match self.sparse(&it["sparse"], bytes, count) {
+                    Ok(sparse) => sparse,
+                    Err((expected, found)) => return error(expected, found),
+                };
+                Ok(Some(Elements { bytes: inner, component, width, stride, count, is_normalized, sparse }))
             }
             _ => {
                 let expected = format!("{count} elements of {bytes} bytes in {} bytes of data", self.binary.len());
                 error(&expected, &it["byteOffset"])
             }
         }
+    }
+
+    /// The view of an accessor or of a part of one; else what was expected, and what was found.
+    fn view<'b>(&'b self, it: &'b Value) -> Result<&'b Value, (&'static str, &'b Value)> {
+        let view = it["bufferView"].as_u64().and_then(|view| self.json["bufferViews"].get(view as usize));
+        let Some(view) = view else { return Err(("a bufferView that is there", &it["bufferView"])) };
+        if view["buffer"].as_u64() != Some(0) || !self.json["buffers"][0]["uri"].is_null() {
+            return Err(("data in the file itself", &view["buffer"]));
+        }
+        Ok(view)
+    }
+
+    /// The bytes of a view from where an accessor begins.
+    fn inner(&self, view: &Value, it: &Value) -> Option<&'a [u8]> {
+        let (from, length) = (place(&view["byteOffset"]), place(&view["byteLength"]));
+        let view = from.checked_add(length).and_then(|end| self.binary.get(from..end));
+        view.and_then(|view| view.get(place(&it["byteOffset"])..))
+    }
+
+    /// What stands for some of an accessor's `count` elements, of so many bytes each.
+    fn sparse<'b>(
+        &'b self,
+        it: &'b Value,
+        bytes: usize,
+        count: usize,
+    ) -> Result<Option<Sparse<'a>>, (&'static str, &'b Value)> {
+        if it.is_null() {
+            return Ok(None);
+        }
+        let (indices, values) = (&it["indices"], &it["values"]);
+        let (of_indices, of_values) =
+            (self.inner(self.view(indices)?, indices), self.inner(self.view(values)?, values));
+        let component = match Component::of(&indices["componentType"]) {
+            Some(component @ (Component::U8 | Component::U16 | Component::U32)) => component,
+            _ => return Err(("indices without sign in sparse", &indices["componentType"])),
+        };
+        let (of_indices, of_values) = (of_indices.unwrap_or_default(), of_values.unwrap_or_default());
+        let some = place(&it["count"]);
+        // So nothing is larger than what is there.
+        if some > of_indices.len() / component.bytes() || some > of_values.len() / bytes {
+            return Err(("as many sparse elements as there are bytes for", &it["count"]));
+        }
+        let numbers: Vec<usize> =
+            of_indices.chunks_exact(component.bytes()).take(some).map(|own| component.read(own) as usize).collect();
+        if !numbers.is_sorted_by(|a, b| a < b) || numbers.last().is_some_and(|last| *last >= count) {
+            return Err(("sparse indices that rise, below the count", indices));
+        }
+        Ok(Some(Sparse { numbers, bytes: of_values }))
     }
 
     /// Finite numbers by N; nothing if there is no such accessor.
@@ -189,7 +259,8 @@ impl<'a> Data<'a> {
         for i in 0..elements.count {
             let index = elements.at(i, 0);
             if index >= vertices as f64 {
-                return Err(wrong(&format!("an index from 0, of {vertices} vertices"), index.to_string()));
+                let expected = format!("accessor {accessor}: an index from 0, of {vertices} vertices");
+                return Err(wrong(&expected, format!("{index} in element {i}")));
             }
             list.push(index as u32);
         }

@@ -16,6 +16,8 @@ use crate::io::LengthUnit;
 
 /// An object and where it stands.
 pub(super) struct Placed {
+    /// The part of the archive that it is in, if that is another one.
+    pub(super) part: Option<String>,
     pub(super) object: u32,
     pub(super) map: DAffine3,
 }
@@ -71,12 +73,25 @@ pub(super) fn value(tag: &BytesStart<'_>, name: &str) -> Option<String> {
 }
 
 impl Model {
+    /// The other parts of the archive that it wants objects of.
+    pub(super) fn parts(&self) -> Vec<String> {
+        let within = self.objects.values().flat_map(|object| match &object.content {
+            Content::Mesh(_) => [].iter(),
+            Content::Components(placed) => placed.iter(),
+        });
+        let mut all: Vec<String> = within.chain(&self.items).filter_map(|placed| placed.part.clone()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
     /// An error where the reader is.
     pub(super) fn wrong(&self, expected: &str, found: impl Into<String>) -> ReadError {
         ReadError::content(FilePlace::Part { part: self.name.clone(), byte: self.at }, expected, found)
     }
 
-    pub(super) fn read(text: &str, name: &str, settings: &Limits<'_>) -> Result<Model, ReadError> {
+    /// Reads a part of the archive: that which says what is built, or one beside it.
+    pub(super) fn read(text: &str, name: &str, is_main: bool, settings: &Limits<'_>) -> Result<Model, ReadError> {
         let mut model = Model {
             name: name.into(),
             unit: LengthUnit::default(),
@@ -115,7 +130,7 @@ impl Model {
                         let expected = format!("</{element}>; of a file that was cut off the rest is needed");
                         return Err(model.wrong(&expected, "the end of the part"));
                     }
-                    if !has_build {
+                    if is_main && !has_build {
                         return Err(model.wrong("a build, which says which objects there are", "the end of the part"));
                     }
                     return Ok(model);
@@ -223,15 +238,15 @@ impl Model {
 
     /// An object and a map of 12 numbers: where the axes and the origin go.
     fn placed(&self, tag: &BytesStart<'_>) -> Result<Placed, ReadError> {
-        if value(tag, "path").is_some() {
-            return Err(self.wrong("objects of this part", "one of another (the production extension)"));
-        }
+        let part = value(tag, "path").map(|path| path.trim_start_matches('/').to_string());
         let object = self.index(tag, "objectid")?;
-        let Some(text) = value(tag, "transform") else { return Ok(Placed { object, map: DAffine3::IDENTITY }) };
+        let Some(text) = value(tag, "transform") else {
+            return Ok(Placed { part, object, map: DAffine3::IDENTITY });
+        };
         let numbers: Vec<f64> = text.split_whitespace().filter_map(|word| number(word.as_bytes())).collect();
         match <[f64; 12]>::try_from(numbers) {
             Ok(numbers) if numbers.iter().all(|x| x.is_finite()) => {
-                Ok(Placed { object, map: DAffine3::from_cols_array(&numbers) })
+                Ok(Placed { part, object, map: DAffine3::from_cols_array(&numbers) })
             }
             _ => Err(self.wrong("a transform of 12 finite numbers", shown(text.as_bytes()))),
         }

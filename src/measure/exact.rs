@@ -7,8 +7,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 use rvachev_field::{Patch, Patches, Polygon};
 
+use super::facets::Facets;
 use crate::eval::{Accuracy, Surface};
-use crate::measure::facets::Facets;
 use crate::solid::{Node, Sweep};
 use crate::{Angle, Bounds, Cancelled, Caps, Extrusion, Profile, Run, Solid};
 
@@ -25,10 +25,10 @@ struct Kept(Option<Triangles>);
 struct There(Arc<Surface>);
 
 /// Triangles that are the surface of a solid.
-struct Triangles {
-    all: Vec<[DVec3; 3]>,
+pub(super) struct Triangles {
+    pub(super) all: Vec<[DVec3; 3]>,
     /// How far the surface may be off them.
-    rounding: f64,
+    pub(super) rounding: f64,
 }
 
 /// The surface of a solid, if triangles are exactly that.
@@ -40,32 +40,51 @@ pub(super) fn surface(solid: &Solid, run: &Run) -> Result<Option<Arc<Surface>>, 
     if !matches!(still.node(), Node::Leaf(_) | Node::Swept { .. }) {
         return Ok(None);
     }
-    let kept = match still.shelf().find(|_: &Kept| true) {
-        Some(kept) => kept,
-        None => {
-            let kept = Arc::new(Kept(triangles(still, run)?));
-            still.shelf().keep(kept.clone());
-            kept
-        }
-    };
+    let kept = kept(still, run)?;
     let Kept(Some(Triangles { all, rounding })) = &*kept else { return Ok(None) };
-    let is_turned = map.matrix3.determinant() < 0.0;
-    let place = |triangle: &[DVec3; 3]| {
-        let [a, b, c] = triangle.map(|p| map.transform_point3(p));
-        Patch::flat(if is_turned { [a, c, b] } else { [a, b, c] })
-    };
-    let patches = Patches::new(&all.iter().map(place).collect::<Vec<Patch>>(), run)?;
-    let stretch = map.matrix3.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
+    let patch = |triangle: &[DVec3; 3]| Patch::flat(placed(triangle, &map));
+    let patches = Patches::new(&all.iter().map(patch).collect::<Vec<Patch>>(), run)?;
     let bounds = patches.bounds();
     let far = bounds.min.abs().max(bounds.max.abs()).max_element();
     // Patches are kept in single precision, about their middle.
     let rounding =
-        stretch * rounding + 4.0 * f64::from(f32::EPSILON) * bounds.longest_side() + 4.0 * f64::EPSILON * far;
+        stretch(&map) * rounding + 4.0 * f64::from(f32::EPSILON) * bounds.longest_side() + 4.0 * f64::EPSILON * far;
     // What goes no deeper than this only touches, as where surfaces are measured.
     let touching = Accuracy::of_surface(rounding.max(TOUCHING * bounds.longest_side()), rounding);
     let surface = Arc::new(Surface::new(Arc::new(patches), touching, None).in_doubt(rounding, Vec::new()));
     solid.shelf().keep(Arc::new(There(surface.clone())));
     Ok(Some(surface))
+}
+
+/// The triangles of a mesh that was read and moved, if they are exactly its surface.
+pub(super) fn facets(solid: &Solid, run: &Run) -> Result<Option<Triangles>, Cancelled> {
+    let (still, map) = at_rest(solid);
+    let Node::Leaf(_) = still.node() else { return Ok(None) };
+    let kept = kept(still, run)?;
+    let Kept(Some(own)) = &*kept else { return Ok(None) };
+    let all = own.all.iter().map(|triangle| placed(triangle, &map)).collect();
+    Ok(Some(Triangles { all, rounding: own.rounding * stretch(&map) }))
+}
+
+/// The triangles of a solid at rest, found once.
+fn kept(still: &Solid, run: &Run) -> Result<Arc<Kept>, Cancelled> {
+    if let Some(kept) = still.shelf().find(|_: &Kept| true) {
+        return Ok(kept);
+    }
+    let kept = Arc::new(Kept(triangles(still, run)?));
+    still.shelf().keep(kept.clone());
+    Ok(kept)
+}
+
+/// A triangle after a map, which looks outwards still.
+fn placed(triangle: &[DVec3; 3], map: &DAffine3) -> [DVec3; 3] {
+    let [a, b, c] = triangle.map(|p| map.transform_point3(p));
+    if map.matrix3.determinant() < 0.0 { [a, c, b] } else { [a, b, c] }
+}
+
+/// No length grows by more.
+fn stretch(map: &DAffine3) -> f64 {
+    map.matrix3.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// What was moved to make a solid, and how.
