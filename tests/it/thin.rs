@@ -379,7 +379,7 @@ fn gaps_between_nodes_are_told() {
             ),
         ];
         for (name, body) in &bodies {
-            let right = body.measure(1e-3).unwrap().volume;
+            let right = body.measure(3e-3).unwrap().volume;
             for turn in 0..4 {
                 let place = random.vector(-0.5, 0.5);
                 let solid =

@@ -3,8 +3,8 @@
 //! ```text
 //!     |##|   |##|       Both ends are so near to the surface that a gap or a wall thinner than a
 //!   o-|#o|-p-|-q|-o     cell may pass between them. The value in the middle shows it; or it is
-//!     |##|   |##|       less than half-way between those of the ends, and falls so that it would
-//!          m x          be 0 before what is near one of them: at x it is looked at once more.
+//!     |##|   |##|       not half-way between those of the ends, and falls so that it would be 0
+//!          m x          before what is near one of them: at x it is looked at once more.
 //! ```
 //!
 //! The tip of a wedge passes between nodes wherever there is one; so only sides that are all but
@@ -25,9 +25,9 @@ const FEW: usize = 4;
 /// As many are looked at to the end.
 const MANY: usize = 4 * FEW;
 
-/// How much less than half-way between those of the ends the value in the middle is, in cells: that
-/// of flat faces is not.
-const DROP: f32 = 0.02;
+/// How far from half-way between those of the ends the value in the middle is at least, in cells:
+/// that of a flat face is not.
+const OFF_LINE: f32 = 0.002;
 
 /// How far beyond where the value would be 0 it is looked at, in cells.
 const BEYOND: f32 = 0.03;
@@ -102,11 +102,11 @@ impl Skips {
         if !sampler.values_at_hand(scratch, asked.number, &self.points, &mut self.values) {
             return false;
         }
-        let dropped = self.edges.iter().zip(&self.values).filter(|(edge, value)| {
+        let bent = self.edges.iter().zip(&self.values).filter(|(edge, value)| {
             let [first, last] = ends(**edge);
-            side(**edge) * **value / asked.most < 0.5 * (first + last) - DROP
+            (side(**edge) * **value / asked.most - 0.5 * (first + last)).abs() > OFF_LINE
         });
-        let places: Vec<(Edge, f32)> = dropped.map(|(edge, _)| (*edge, 0.5)).collect();
+        let places: Vec<(Edge, f32)> = bent.map(|(edge, _)| (*edge, 0.5)).collect();
         if places.len() < FEW || !self.ask((sampler, scratch), asked.number, &places) {
             return false;
         }
