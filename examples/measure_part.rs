@@ -112,7 +112,7 @@ fn picture(solid: &Solid, thickness: &ThicknessReport, path: &Path) -> Result<()
 fn limits(least: f64) -> [f64; 3] {
     let decade = 10f64.powf(least.log10().floor());
     let round = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0].map(|part| part * decade);
-    let first = round.iter().position(|limit| *limit > least).unwrap_or(0);
+    let first = round.iter().position(|limit| *limit > least).unwrap_or(0).min(3);
     [round[first], round[first + 1], round[first + 2]]
 }
 
