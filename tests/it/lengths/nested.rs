@@ -38,7 +38,7 @@ fn chains_of_different_fillets_have_no_limit() {
         let plate = Solid::cuboid([9.0, 6.0, 0.4]);
         let all = (0..39)
             .fold(plate, |all, n| all.union_with(Solid::cylinder(0.2, 1.0).translate(place(n)), fillet(radius(n))));
-        for n in [0, 1, 5, 8, 9] {
+        for n in [0, 1, 3, 5] {
             let r = radius(n);
             let ball = place(n) + DVec3::new(0.2 + r, 0.0, r);
             let towards = DVec3::new(-1.0, 0.0, -1.0).normalize();
@@ -47,7 +47,7 @@ fn chains_of_different_fillets_have_no_limit() {
                 assert_eq!(got, want, "pin {n}");
             }
         }
-        let found = report(&all, 96).map_err(|error| error.to_string())?;
+        let found = report(&all, 64).map_err(|error| error.to_string())?;
         assert_eq!(found.shells, 1, "{found}");
         Ok(())
     };
