@@ -86,8 +86,9 @@ fn cap() -> Solid {
     let contacts = contact(18.0, 40.0) | contact(14.0, 36.0).translate([RING, 0.0, 0.0]).repeat_polar(LEADS);
 
     let outside = dome | ribs | flange | lug.mirrored_x() | lead | coil;
+    // Into the hollow: to its wall only, it would leave a film between the two.
     let key =
-        Solid::from(Supershape::new(square(60.0), square(60.0)).scaled([3.0, 6.0, 3.0])).translate([0.0, -37.0, 0.0]);
+        Solid::from(Supershape::new(square(60.0), square(60.0)).scaled([3.0, 7.0, 3.0])).translate([0.0, -37.0, 0.0]);
     let moulded = (outside & above) - hollow.named("hollow") - sockets.named("sockets") - screw.mirrored_x() - key;
     moulded | contacts.named("contacts")
 }

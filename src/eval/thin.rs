@@ -58,17 +58,11 @@ impl Program {
     }
 
     /// Which leaves of the solid, by their numbers, are convex and thinner than this, in length
-    /// units: holes and rods of that size may pass between samples without a change of sign. Arms of
-    /// stars, whose values tell no distances either, are thinner than half of their boxes.
+    /// units: holes and rods of that size may pass between samples without a change of sign.
     pub(crate) fn thin_leaves(&self, thickness: f64) -> Vec<bool> {
         let is_thin = |leaf: &Instance| {
             let size = leaf.field.bounds_under(&DAffine3::IDENTITY).size().min_element();
-            let parts = match (leaf.field.convex(), leaf.field.exact()) {
-                (true, _) => 1.0,
-                (false, false) => 2.0,
-                (false, true) => return false,
-            };
-            leaf.placement.scale * size + 2.0 * leaf.placement.shift < parts * thickness
+            leaf.field.convex() && leaf.placement.scale * size + 2.0 * leaf.placement.shift < thickness
         };
         self.scene.leaves.iter().map(is_thin).collect()
     }

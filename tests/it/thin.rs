@@ -365,7 +365,7 @@ fn gaps_between_nodes_are_told() {
         tube - (Solid::cylinder(6.0 + width, 4.0) - Solid::cylinder(6.0, 5.0))
     };
     let mut worst = 0.0f64;
-    for width in [0.1, 0.7] {
+    for width in [0.1, 0.3, 0.7] {
         let bodies = [
             ("comb", comb(width)),
             ("slots", &plate - slots(width)),
@@ -380,7 +380,7 @@ fn gaps_between_nodes_are_told() {
         ];
         for (name, body) in &bodies {
             let right = body.measure(3e-3).unwrap().volume;
-            for turn in 0..3 {
+            for turn in 0..4 {
                 let place = random.vector(-0.5, 0.5);
                 let solid =
                     if turn == 0 { body.translate(place) } else { body.rotate(random.rotation()).translate(place) };
