@@ -43,7 +43,8 @@ pub fn rows() -> Vec<Row> {
         row("bracket, both", bracket, || bracket().filleted(1.5).rounded(0.8), BLENDED),
         row("twisted, opening", twisted, || twisted().rounded(2.0), BLENDED),
         row("one fillet", || post(PLAIN), || post(Some(fillet(3.0))), BLENDED),
-        row("two fillets", || three(PLAIN), || three(Some(fillet(2.0))), BLENDED),
+        row("two fillets", || three([PLAIN; 2]), || three([3.0, 2.0].map(|radius| Some(fillet(radius)))), BLENDED),
+        row("six radii, chain", || radii(PLAIN), || radii(Some(fillet(0.1))), BLENDED),
         row("ten fillets, chain", || chain(10, PLAIN), || chain(10, Some(fillet(0.05))), BLENDED),
         row("one chamfer", || post(PLAIN), || post(Some(Blend::Chamfer { leg: 2.0 })), BLENDED),
         row("chamfered joint", || joint(PLAIN), || joint(Some(Blend::Chamfer { leg: 0.15 })), BLENDED),
@@ -106,9 +107,21 @@ fn post(blend: Option<Blend>) -> Solid {
     joined(&plate(), &at(Solid::cylinder(6.0, 30.0), [0.0, 0.0, 15.0]), blend)
 }
 
-/// A post and a rib on a plate.
-fn three(blend: Option<Blend>) -> Solid {
-    joined(&post(blend), &at(Solid::cuboid([40.0, 4.0, 20.0]), [10.0, 0.0, 10.0]), blend)
+/// A post and a rib on a plate. Fillets of different radii nest.
+fn three([of_post, of_rib]: [Option<Blend>; 2]) -> Solid {
+    joined(&post(of_post), &at(Solid::cuboid([40.0, 4.0, 20.0]), [10.0, 0.0, 10.0]), of_rib)
+}
+
+/// Six pins in a row on a plate, each with a fillet that is a little larger than the one before.
+fn radii(blend: Option<Blend>) -> Solid {
+    (0..6).fold(Solid::cuboid([7.0, 1.5, 0.4]), |all, n| {
+        let pin = at(Solid::cylinder(0.2, 1.0), [f64::from(n) - 2.5, 0.0, 0.2]);
+        let larger = |blend| match blend {
+            Blend::Fillet { radius } => fillet(radius * (1.0 + 1e-3 * f64::from(n))),
+            other => other,
+        };
+        joined(&all, &pin, blend.map(larger))
+    })
 }
 
 /// A pin of superelliptic shape through a plate.

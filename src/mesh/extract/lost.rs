@@ -70,19 +70,20 @@ pub(super) fn suspected<S: Sampler>(
     (number, block): (usize, [u32; 3]),
     (signs, values): (&Signs, &[f32; NODES]),
 ) -> Option<Suspicion> {
-    let slope = || {
+    let slope = |steeper: f64| {
         let bound = sampler.lipschitz_bound(number, block);
-        if bound.is_finite() { bound * lattice.step() } else { STEEPER * f64::from(steepest(values)) }
+        if bound.is_finite() { bound * lattice.step() } else { steeper * f64::from(steepest(values)) }
     };
     if signs.is_mixed() {
         let is_bored = sampler.is_bored(number, block)
             || sampler.may_skip(number, block) && {
-                let [most, step] = [slope(), lattice.step()].map(|length| length as f32);
+                // Of gaps that are steeper than all else some are found.
+                let [most, step] = [slope(1.0), lattice.step()].map(|length| length as f32);
                 skips.are_passed((sampler, scratch), Asked { number, most, step }, (signs, values))
             };
         return is_bored.then_some(Suspicion::Bored);
     }
-    let slope = slope();
+    let slope = slope(STEEPER);
     CellRows::near(values, (REACH * slope) as f32).map(|cells| Suspicion::Hidden(Box::new(cells)))
 }
 

@@ -104,7 +104,8 @@ impl Skips {
         }
         let bent = self.edges.iter().zip(&self.values).filter(|(edge, value)| {
             let [first, last] = ends(**edge);
-            (side(**edge) * **value / asked.most - 0.5 * (first + last)).abs() > OFF_LINE
+            let middle = side(**edge) * **value / asked.most;
+            (middle - 0.5 * (first + last)).abs() > OFF_LINE && middle + first.min(last) < 0.5
         });
         let places: Vec<(Edge, f32)> = bent.map(|(edge, _)| (*edge, 0.5)).collect();
         if places.len() < FEW || !self.ask((sampler, scratch), asked.number, &places) {
