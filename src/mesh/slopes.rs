@@ -87,9 +87,9 @@ impl Slopes<'_> {
         let tasks = self.tasks(points, run)?;
         let found: Result<Vec<Vec<Slope>>, Cancelled> = tasks
             .par_iter()
-            .map(|task| {
+            .map_init(Evaluator::new, |evaluator, task| {
                 run.check()?;
-                self.of_task(task, points, run)
+                self.of_task(evaluator, task, points, run)
             })
             .collect();
         let mut all = vec![Slope::default(); points.len()];
@@ -135,7 +135,13 @@ impl Slopes<'_> {
         Ok(tasks)
     }
 
-    fn of_task(&self, task: &Task, points: &[DVec3], run: &Run) -> Result<Vec<Slope>, Cancelled> {
+    fn of_task(
+        &self,
+        evaluator: &mut Evaluator,
+        task: &Task,
+        points: &[DVec3],
+        run: &Run,
+    ) -> Result<Vec<Slope>, Cancelled> {
         let tape = Tape::new(&task.program, &task.bounds);
         let exact = |(i, number): (usize, &u32)| {
             if i.is_multiple_of(OFTEN) {
@@ -153,7 +159,7 @@ impl Slopes<'_> {
         let (x, y, z) = (axis(0), axis(1), axis(2));
         let mut out = [(); 4].map(|()| vec![0.0f32; x.len()]);
         let [value, dx, dy, dz] = &mut out;
-        Evaluator::new().shortest_gradients(&tape, [&x, &y, &z], Gradients { value, dx, dy, dz });
+        evaluator.shortest_gradients(&tape, [&x, &y, &z], Gradients { value, dx, dy, dz });
         let slope = |i: usize| Slope {
             value: f64::from(out[0][i]),
             gradient: DVec3::new(f64::from(out[1][i]), f64::from(out[2][i]), f64::from(out[3][i])),

@@ -15,8 +15,8 @@ use crate::kernel::{CHUNK, Element};
 /// How many points are sorted at a time.
 pub(super) const BLOCK: usize = CHUNK;
 
-/// How many cells there are along an axis.
-const CELLS: usize = 8;
+/// Along an axis there are 2 to this many cells at most.
+const DEEPEST: u32 = 3;
 
 /// Points of the surface's frame.
 pub(super) struct Block<E> {
@@ -27,7 +27,7 @@ pub(super) struct Block<E> {
     order: [u16; BLOCK],
     /// The cells that they are in, and where the points of each begin.
     cells: [u16; BLOCK],
-    starts: [u16; CELLS * CELLS * CELLS],
+    starts: [u16; 1 << (3 * DEEPEST)],
     before: [E; BLOCK],
 }
 
@@ -39,7 +39,7 @@ impl<E: Element> Block<E> {
             numbers: [E::default(); BLOCK],
             order: [0; BLOCK],
             cells: [0; BLOCK],
-            starts: [0; CELLS * CELLS * CELLS],
+            starts: [0; 1 << (3 * DEEPEST)],
             before: [E::default(); BLOCK],
         }
     }
@@ -52,21 +52,25 @@ impl<E: Element> Block<E> {
         let (x, y, z) = (&mut x[..len], &mut y[..len], &mut z[..len]);
         let ((low_x, width_x), (low_y, width_y), (low_z, width_z)) = (span(x), span(y), span(z));
         let width = width_x.max(width_y).max(width_z);
-        let per_cell = if width > 0.0 { (CELLS as f32 * (1.0 - 1e-6)) / width } else { 0.0 };
+        let per_cell = if width > 0.0 { ((1 << DEEPEST) as f32 * (1.0 - 1e-6)) / width } else { 0.0 };
+        // As many cells as points, and up to eight times as many.
+        let depth = (len.max(1).ilog2() / 3 + 1).min(DEEPEST);
+        let coarser = 3 * (DEEPEST - depth);
         let shifts = [(3 - along) % 3, (4 - along) % 3, (5 - along) % 3];
         let (cells, starts, before) = (&mut self.cells, &mut self.starts, &mut self.before);
         for i in 0..len {
             let x = cell(x[i], low_x, per_cell);
             let y = cell(y[i], low_y, per_cell);
             let z = cell(z[i], low_z, per_cell);
-            cells[i] = x << shifts[0] | y << shifts[1] | z << shifts[2];
+            cells[i] = (x << shifts[0] | y << shifts[1] | z << shifts[2]) >> coarser;
         }
+        let starts = &mut starts[..1 << (3 * depth)];
         starts.fill(0);
         for cell in &cells[..len] {
             starts[usize::from(*cell)] += 1;
         }
         let mut sum = 0;
-        for start in &mut *starts {
+        for start in starts.iter_mut() {
             sum += std::mem::replace(start, sum);
         }
         for (i, cell) in (0..).zip(&cells[..len]) {
@@ -130,6 +134,6 @@ fn span<E: Element>(column: &[E]) -> (f32, f32) {
 /// The bits of the cell that a coordinate is in, two bits apart.
 #[inline(always)]
 fn cell<E: Element>(v: E, low: f32, per_cell: f32) -> u16 {
-    let cell = (((v.to_f64() as f32 - low) * per_cell) as u16).min(CELLS as u16 - 1);
+    let cell = (((v.to_f64() as f32 - low) * per_cell) as u16).min((1 << DEEPEST) - 1);
     cell & 1 | (cell & 2) << 2 | (cell & 4) << 4
 }

@@ -10,8 +10,9 @@ use super::block::{BLOCK, Block};
 use super::closest::dot;
 use super::packet::{Packet, WIDEST};
 use super::packets::{Packets, Seeds};
-use super::pairs::{Found, Pairs};
-use super::search::{Entries, Stack};
+use super::pairs::Pairs;
+use super::room::{Room, Roomy};
+use super::search::{Entries, Nearest, Stack};
 use crate::kernel::{Element, distinct, on_level, repeat};
 use crate::{Chunk, Placement};
 
@@ -146,20 +147,13 @@ struct Work<L: Lanes> {
     stack: Stack<L>,
     seeds: Seeds,
     pairs: Pairs<L>,
-    block: Block<L::Element>,
-    found: Found<L::Element>,
+    room: Box<Room<L::Element>>,
 }
 
-impl<L: Lanes<Element: Element> + Packet> Work<L> {
+impl<L: Lanes<Element: Roomy> + Packet> Work<L> {
     #[inline(always)]
-    fn new(simd: L::Token) -> Work<L> {
-        Work {
-            stack: Stack::new(L::splat(simd, 0.0)),
-            seeds: Seeds::default(),
-            pairs: Pairs::new(),
-            block: Block::new(),
-            found: Found::none(),
-        }
+    fn new() -> Work<L> {
+        Work { stack: Stack::new(), seeds: Seeds::default(), pairs: Pairs::new(), room: Room::take() }
     }
 
     /// Finds how far the points of a block are, where in the chunk `here` is; and if `ways` are
@@ -177,39 +171,46 @@ impl<L: Lanes<Element: Element> + Packet> Work<L> {
         let patches = packets.patches;
         let is_flat = patches.quadratics.is_empty();
         let len = here.len();
-        let (near, entries) = fill::<L>(simd, packets, points, signs, here, &mut self.block);
+        let Room { block, found } = &mut *self.room;
+        let (near, entries) = fill::<L>(simd, packets, points, signs, here, block);
         self.seeds.start(near);
         let mut at = 0;
         while at < len {
             let here = at..at + L::WIDTH;
-            let [x, y, z] = &self.block.columns;
+            let [x, y, z] = &block.columns;
             let p = load::<L>(simd, [x, y, z], here.clone());
             self.pairs.first = at as u32;
-            let range = packets.range(L::load(simd, &self.block.numbers[here.clone()]));
-            let best = patches.search(p, entries.all(), self.seeds.known(), range, &mut self.stack, &mut self.pairs);
+            let range = packets.range(L::load(simd, &block.numbers[here.clone()]));
+            let Nearest { all: best, flat } =
+                patches.search(p, entries.all(), self.seeds.known(), range, &mut self.stack, &mut self.pairs);
             self.seeds.take(best.which);
-            let (all, _) = best.which.all();
-            for (to, which) in self.found.patches[here.clone()].iter_mut().zip(all) {
+            for (to, which) in found.patches[here.clone()].iter_mut().zip(flat.which.all().0) {
                 *to = which as u32;
             }
-            best.square.store(&mut self.found.squares[here.clone()]);
+            // What is not told apart has a bound of its distance.
+            let to_high = (best.square - range.high).select(best.square, flat.square);
+            let square = (best.square - range.low).select(to_high, best.square);
+            square.store(&mut found.squares[here.clone()]);
             if !is_flat {
+                for (to, which) in found.likely[here.clone()].iter_mut().zip(best.which.all().0) {
+                    *to = which as u32;
+                }
                 let (near, told) = (best.square.below(range.low), best.square.below(range.high));
                 for lane in 0..L::WIDTH {
-                    self.found.is_near[at + lane] = near >> lane & 1 == 1;
-                    self.found.is_far[at + lane] = told >> lane & 1 == 0;
+                    found.is_near[at + lane] = near >> lane & 1 == 1;
+                    found.is_far[at + lane] = told >> lane & 1 == 0;
                 }
             }
-            if is_flat && ways {
-                let way = packets.ways(p, best.which);
-                way[0].store(&mut self.found.ways[0][here.clone()]);
-                way[1].store(&mut self.found.ways[1][here.clone()]);
-                way[2].store(&mut self.found.ways[2][here]);
+            if ways {
+                let way = packets.ways(p, flat.which);
+                way[0].store(&mut found.ways[0][here.clone()]);
+                way[1].store(&mut found.ways[1][here.clone()]);
+                way[2].store(&mut found.ways[2][here]);
             }
             at += L::WIDTH;
         }
         if !is_flat {
-            self.pairs.settle(simd, patches, &self.block, &mut self.found, len);
+            self.pairs.settle(simd, patches, block, found, len);
         }
     }
 }
@@ -217,21 +218,21 @@ impl<L: Lanes<Element: Element> + Packet> Work<L> {
 /// Values, block by block; `out` holds the signs before, or `tell` puts them there: of points in a
 /// place, given the squares of their distances.
 #[inline(always)]
-fn values_on<L: Lanes<Element: Element> + Packet>(
+fn values_on<L: Lanes<Element: Roomy> + Packet>(
     simd: L::Token,
     packets: &Packets<'_>,
     points: [&[L::Element]; 3],
     out: &mut [L::Element],
     tell: impl Fn(ops::Range<usize>, &[L::Element], &mut [L::Element]),
 ) {
-    let mut work = Work::<L>::new(simd);
+    let mut work = Work::<L>::new();
     let mut squares = [L::Element::default(); BLOCK];
     let mut from = 0;
     while from < out.len() {
         let len = BLOCK.min(out.len() - from);
         let own = L::WIDTH * distinct(points.map(|axis| &axis[from..from + len])).div_ceil(L::WIDTH);
         work.find(simd, packets, points, out, from..from + own, false);
-        work.block.unsorted(&work.found.squares, &mut squares[..own]);
+        work.room.block.unsorted(&work.room.found.squares, &mut squares[..own]);
         repeat(&mut squares[..len], own);
         tell(from..from + len, &squares[..len], &mut out[from..from + len]);
         take_sides(packets, points, &squares, &mut out[from..from + len], from);
@@ -244,6 +245,7 @@ fn values_on<L: Lanes<Element: Element> + Packet>(
         }
         from += len;
     }
+    work.room.give();
 }
 
 /// The same of machines without lanes.
@@ -281,7 +283,7 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
     points: [&[f32]; 3],
     out: &mut [&mut [f32]; 4],
 ) {
-    let mut work = Work::<L>::new(simd);
+    let mut work = Work::<L>::new();
     let mut ways = [[0.0; BLOCK]; 3];
     let mut squares = [0.0; BLOCK];
     let mut patches = [0; BLOCK];
@@ -290,11 +292,11 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
         let len = BLOCK.min(out[0].len() - from);
         let own = L::WIDTH * distinct(points.map(|axis| &axis[from..from + len])).div_ceil(L::WIDTH);
         work.find(simd, packets, points, &*out[0], from..from + own, true);
-        for (way, sorted) in ways.iter_mut().zip(&work.found.ways) {
-            work.block.unsorted(sorted, &mut way[..own]);
+        for (way, sorted) in ways.iter_mut().zip(&work.room.found.ways) {
+            work.room.block.unsorted(sorted, &mut way[..own]);
             repeat(&mut way[..len], own);
         }
-        work.block.unsorted(&work.found.patches, &mut patches[..own]);
+        work.room.block.unsorted(&work.room.found.patches, &mut patches[..own]);
         repeat(&mut patches[..len], own);
         for (i, square) in squares[..len].iter_mut().enumerate() {
             let [x, y, z] = [0, 1, 2].map(|axis| ways[axis][i]);
@@ -320,6 +322,7 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
         }
         from += len;
     }
+    work.room.give();
 }
 
 /// Computes what is close to the surface again, in double precision: the squares of the distances,

@@ -88,6 +88,12 @@ pub(super) struct Face {
 }
 
 impl Face {
+    /// Whether it is all that there is of its patch.
+    #[inline(always)]
+    pub(super) fn is_flat(&self) -> bool {
+        self.sag == 0.0
+    }
+
     pub(super) fn new(patch: &Patch, frame: &Frame) -> Face {
         let [a, b, c] = patch.corners.map(|corner| frame.into_local(corner));
         let (e, f) = (b - a, c - a);

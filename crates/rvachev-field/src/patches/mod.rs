@@ -46,6 +46,7 @@ mod packets;
 mod pairs;
 mod patch;
 mod plane;
+mod room;
 mod search;
 mod solid;
 mod surface_distance;
@@ -62,7 +63,7 @@ use self::curved::Around;
 use self::disc::Disc;
 use self::face::{Face, Frame, Quadratic, Sides, wide};
 use self::hierarchy::{Node, Tree};
-use self::search::{Best, Entries, Keep, Range, Stack};
+use self::search::{Best, Entries, Keep, Nearest, Range, Stack};
 use crate::Bounds;
 
 pub use self::approach::Approach;
@@ -179,8 +180,9 @@ impl Patches {
     /// The nearest patch to one point of the surface's frame.
     fn search_one(&self, local: [f64; 3]) -> Best<f64> {
         let mut curved = One { patches: self, local, best: Best::none(0.0) };
-        let best = self.search(local, self.all(), &[], Range::all(0.0), &mut Stack::new(0.0), &mut curved);
-        if self.quadratics.is_empty() { best } else { curved.best }
+        let Nearest { flat, .. } = self.search(local, self.all(), &[], Range::all(0.0), &mut Stack::new(), &mut curved);
+        curved.best.take(flat.square, flat.which as u32);
+        curved.best
     }
 
     /// The boxes that a search begins with which knows nothing.

@@ -48,6 +48,8 @@ pub(super) struct Found<E> {
     /// From the nearest points.
     pub(super) ways: [[E; BLOCK]; 3],
     pub(super) patches: [u32; BLOCK],
+    /// The patches that are likely to have them.
+    pub(super) likely: [u32; BLOCK],
     /// Whether no more is asked, though it may be nearer than the square says.
     pub(super) is_near: [bool; BLOCK],
     /// Whether it is not known to be nearer than the farthest that is asked for.
@@ -68,6 +70,7 @@ impl<E: Element> Found<E> {
             squares: [Found::<E>::farthest(); BLOCK],
             ways: [[E::default(); BLOCK]; 3],
             patches: [0; BLOCK],
+            likely: [0; BLOCK],
             is_near: [false; BLOCK],
             is_far: [false; BLOCK],
         }
@@ -80,8 +83,9 @@ impl<L: Lanes<Element: Element> + Packet> Pairs<L> {
         Pairs { first: 0, kept: Vec::new(), pairs: Vec::new() }
     }
 
-    /// Finds the nearest points of the first `len` points of a block: on the patches that are
-    /// likely to have them, and then on those that are kept and may be nearer still.
+    /// Finds the nearest points of the first `len` points of a block, where they are on curved
+    /// patches: on those that are likely to have them, and then on those that are kept and may be
+    /// nearer still.
     #[inline(always)]
     pub(super) fn settle(
         &mut self,
@@ -93,9 +97,10 @@ impl<L: Lanes<Element: Element> + Packet> Pairs<L> {
     ) {
         self.pairs.clear();
         for point in 0..len {
-            if !found.is_near[point] && !found.is_far[point] {
-                found.squares[point] = Found::<L::Element>::farthest();
-                self.pairs.push((point as u32, found.patches[point]));
+            let likely = found.likely[point];
+            let is_curved = patches.at(likely as usize).is_some_and(|(face, _)| !face.is_flat());
+            if is_curved && !found.is_near[point] && !found.is_far[point] {
+                self.pairs.push((point as u32, likely));
             }
         }
         let mut round = 0;
@@ -119,7 +124,7 @@ impl<L: Lanes<Element: Element> + Packet> Pairs<L> {
             while points != 0 {
                 let point = first + points.trailing_zeros();
                 let place = point as usize % BLOCK;
-                if !found.is_near[place] && (found.is_far[place] || found.patches[place] != *at) {
+                if !found.is_near[place] && (found.is_far[place] || found.likely[place] != *at) {
                     self.pairs.push((point, *at));
                 }
                 points &= points - 1;

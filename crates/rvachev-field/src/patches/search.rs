@@ -1,15 +1,15 @@
 //! The search for the nearest patch: down the hierarchy, the nearer box first, leaving out boxes
 //! that are farther than what is known.
 //!
-//! A flat patch is as far as its triangle. A curved one is as far as that to within its sag, which
-//! is enough to leave most of them out: the few that are left are asked for their nearest points
-//! once the boxes are done.
+//! A flat patch is as far as its triangle, which is all there is to know. A curved one is as far as
+//! that to within its sag, which is enough to leave most of them out: the few that are left are
+//! asked for their nearest points once the boxes are done.
 
 use rvachev_num::Real;
 
 use super::Patches;
 use super::face::{Face, SLACK, Sides};
-use super::hierarchy::{DEEPEST, LEAF, Node, PARENT};
+use super::hierarchy::{LEAF, Node, PARENT};
 use super::packet::Packet;
 
 /// What is left of a lower bound after rounding: that of a box is off by a few units in the last
@@ -22,7 +22,7 @@ const SURELY: f64 = 2.0 - SURE;
 /// What is known so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Best<R> {
-    /// Squares of the distances, of a surface with curved patches: what they are at most.
+    /// Squares of the distances, or what they are at most.
     pub(super) square: R,
     /// Where the patches are, as the hierarchy sorts them.
     pub(super) which: R,
@@ -53,20 +53,37 @@ impl<R: Packet> Best<R> {
     }
 }
 
-/// Boxes that are still to be looked into, and how far they are at least.
+/// What a search finds.
+pub(super) struct Nearest<R> {
+    /// How far it is at most, and the patch that is likely to be nearest.
+    pub(super) all: Best<R>,
+    /// The nearest of the flat patches that may be nearest of all.
+    pub(super) flat: Best<R>,
+}
+
+/// Boxes that are still to be looked into, and how far they are at least. The lists are as long as
+/// they have ever been.
 pub(super) struct Stack<R> {
-    boxes: [(u32, R); 2 * DEEPEST + ENTRIES],
-    kept: [(u32, R); KEPT],
+    boxes: Vec<(u32, R)>,
+    kept: Vec<(u32, R)>,
 }
 
 /// A search of a block begins with so many boxes at most.
 pub(super) const ENTRIES: usize = 12;
 
-impl<R: Real> Stack<R> {
+impl<R> Stack<R> {
     #[inline(always)]
-    pub(super) fn new(like: R) -> Stack<R> {
-        let none = (0, like.lift(0.0));
-        Stack { boxes: [none; 2 * DEEPEST + ENTRIES], kept: [none; KEPT] }
+    pub(super) fn new() -> Stack<R> {
+        Stack { boxes: Vec::with_capacity(KEPT), kept: Vec::with_capacity(KEPT) }
+    }
+}
+
+/// Writes an item to a place of a list, or adds it right behind.
+#[inline(always)]
+fn put<T>(list: &mut Vec<T>, at: usize, item: T) {
+    match list.get_mut(at) {
+        Some(place) => *place = item,
+        None => list.push(item),
     }
 }
 
@@ -111,8 +128,8 @@ impl<R: Packet> Range<R> {
 const KEPT: usize = 32;
 
 impl Patches {
-    /// Finds the nearest patches to points of the surface's frame, of curved patches all that may
-    /// be. It begins with boxes that hold all that may be nearest, the last one first; `seeds` are
+    /// Finds the nearest patches to points of the surface's frame: of flat ones the nearest, of
+    /// curved ones all that may be. It begins with boxes that hold all that may be nearest, the last one first; `seeds` are
     /// patches that are likely to be near. What is found below the range is a bound
     /// of the distance, and what is beyond is held at its end.
     #[inline(always)]
@@ -124,9 +141,9 @@ impl Patches {
         range: Range<R>,
         stack: &mut Stack<R>,
         curved: &mut impl Keep<R>,
-    ) -> Best<R> {
+    ) -> Nearest<R> {
         let mut best = Best::none(p[0]).within(range.high);
-        let is_flat = self.quadratics.is_empty();
+        let mut flat = Best::none(p[0]);
         // No point is farther than this.
         let mut most = best.square;
         for seed in seeds {
@@ -170,9 +187,10 @@ impl Patches {
                 }
                 for at in node.first..node.first + node.count {
                     let Some((face, sides)) = self.at(at as usize) else { continue };
-                    if is_flat {
+                    if face.is_flat() {
                         if let Some(square) = R::from_near_face(p, face, sides, most) {
                             best.take(square, at);
+                            flat.take(square, at);
                             most = open(most.min(best.square));
                         }
                         continue;
@@ -181,7 +199,7 @@ impl Patches {
                     let distance = square.sqrt();
                     let least = (distance * SURE - f64::from(face.sag)).max(square.lift(0.0));
                     let least = least.square() * SURE;
-                    stack.kept[count] = (at, least);
+                    put(&mut stack.kept, count, (at, least));
                     count += usize::from(least.any_below(most));
                     best.take((distance + f64::from(face.sag)).square() * SURELY + f64::from(f32::MIN_POSITIVE), at);
                     most = open(most.min(best.square));
@@ -191,7 +209,7 @@ impl Patches {
                 curved.keep(*at, *least, most);
             }
         }
-        best.within(known)
+        Nearest { all: best.within(known), flat }
     }
 
     /// A patch that is hardly farther from a point than others: one of the box that going down to
@@ -231,7 +249,7 @@ impl Patches {
     fn push<R: Packet>(&self, at: u32, p: [R; 3], most: R, stack: &mut Stack<R>, height: &mut usize) {
         let least = self.gap(at, p);
         // Without branches: which way they go is all but chance.
-        stack.boxes[*height] = (at, least);
+        put(&mut stack.boxes, *height, (at, least));
         *height += usize::from(least.any_below(most));
     }
 
