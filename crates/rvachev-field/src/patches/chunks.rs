@@ -3,7 +3,7 @@
 use std::ops;
 
 use fearless_simd::{Level, Simd};
-use rvachev_num::lanes::{F32, F64, Lanes};
+use rvachev_num::lanes::{F32, F64, Lanes, Twice};
 
 use super::SurfaceDistance;
 use super::block::{BLOCK, Block};
@@ -37,7 +37,7 @@ impl SurfaceDistance {
             }
         };
         on_level!(
-            simd => values_on::<F32<_>>(simd, &packets, points, out, tell),
+            simd => values_on::<Twice<F32<_>>>(simd, &packets, points, out, tell),
             else values_by_point(&packets, points, out, tell)
         );
     }
@@ -76,7 +76,7 @@ impl SurfaceDistance {
         self.signs32(points, placement, out[0]);
         let packets = self.packets(placement, f64::INFINITY);
         on_level!(
-            simd => slopes_on::<F32<_>>(simd, &packets, points, &mut out),
+            simd => slopes_on::<Twice<F32<_>>>(simd, &packets, points, &mut out),
             else slopes_by_point(&packets, points, &mut out)
         );
     }

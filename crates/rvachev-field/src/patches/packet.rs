@@ -2,7 +2,7 @@
 
 use fearless_simd::prelude::*;
 use rvachev_num::Real;
-use rvachev_num::lanes::{F32, F64};
+use rvachev_num::lanes::{F32, F64, Lanes, Twice};
 
 use super::closest::on_face;
 use super::double;
@@ -10,7 +10,7 @@ use super::face::{Face, Sides};
 use super::plane::Plane;
 
 /// The most points of a packet.
-pub(super) const WIDEST: usize = 16;
+pub(super) const WIDEST: usize = 32;
 
 /// One point's number, or those of a packet of points.
 pub(super) trait Packet: Real {
@@ -151,5 +151,51 @@ impl<S: Simd> Packet for F64<S> {
     #[inline(always)]
     fn from_face(p: [Self; 3], face: &Face, sides: &Sides) -> Self {
         double::square(face, sides, p, Self::SLIM)
+    }
+}
+
+/// Two vectors of points go through the hierarchy together: boxes are read once for both.
+impl<T: Packet + Lanes> Packet for Twice<T> {
+    const STILL: f64 = T::STILL;
+    const SLIM: f64 = T::SLIM;
+    const EPSILON: f64 = T::EPSILON;
+
+    #[inline(always)]
+    fn below(self, other: Self) -> u64 {
+        self.0.below(other.0) | self.1.below(other.1) << T::WIDTH
+    }
+
+    #[inline(always)]
+    fn any_below(self, other: Self) -> bool {
+        self.0.any_below(other.0) | self.1.any_below(other.1)
+    }
+
+    #[inline(always)]
+    fn one(self) -> f32 {
+        self.1.one()
+    }
+
+    #[inline(always)]
+    fn all(self) -> ([f32; WIDEST], usize) {
+        let (mut all, count) = self.0.all();
+        let (others, more) = self.1.all();
+        all[count..count + more].copy_from_slice(&others[..more]);
+        (all, count + more)
+    }
+
+    #[inline(always)]
+    fn from_face([x, y, z]: [Self; 3], face: &Face, sides: &Sides) -> Self {
+        Twice(T::from_face([x.0, y.0, z.0], face, sides), T::from_face([x.1, y.1, z.1], face, sides))
+    }
+
+    #[inline(always)]
+    fn from_near_face([x, y, z]: [Self; 3], face: &Face, sides: &Sides, most: Self) -> Option<Self> {
+        let first = T::from_near_face([x.0, y.0, z.0], face, sides, most.0);
+        let second = T::from_near_face([x.1, y.1, z.1], face, sides, most.1);
+        let far = x.0.lift(f64::from(f32::MAX));
+        match (first, second) {
+            (None, None) => None,
+            (first, second) => Some(Twice(first.unwrap_or(far), second.unwrap_or(far))),
+        }
     }
 }

@@ -297,8 +297,11 @@ impl Patches {
             }
         }
         let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
-        let gap = |at: u32| self.gap(at, middle);
-        entries.nodes[..entries.count].sort_unstable_by(|a, b| gap(*b).total_cmp(&gap(*a)));
+        let mut sorted = entries.nodes.map(|at| (0.0, at));
+        let sorted = &mut sorted[..entries.count];
+        sorted.iter_mut().for_each(|(gap, at)| *gap = self.gap(*at, middle));
+        sorted.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
+        entries.nodes.iter_mut().zip(sorted).for_each(|(to, (_, at))| *to = *at);
         entries
     }
 
