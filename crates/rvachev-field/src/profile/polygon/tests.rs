@@ -352,3 +352,68 @@ fn points_that_repeat_the_one_before_are_left_out() {
     assert_eq!(polygon.check(), Ok(()));
     assert_eq!((polygon.edge_count(), polygon.area()), (3, 2.0));
 }
+
+/// A comb of teeth of a hundred times their width, turned.
+fn comb(teeth: usize, turn: f64) -> Vec<DVec2> {
+    let count = teeth as f64;
+    let tooth = |k: usize| {
+        let (x, y) = (k as f64, 100.0 + (k as f64).sin());
+        [[x, 0.0], [x + 0.3, y], [x + 0.7, y], [x + 0.9, 0.0]]
+    };
+    let teeth = (0..teeth).flat_map(tooth).chain([[count, -10.0], [0.0, -10.0]]);
+    teeth.map(|p| DVec2::from_angle(turn).rotate(DVec2::from_array(p))).collect()
+}
+
+/// Rays about a point, and blades that all begin at one.
+fn rays(count: usize) -> Vec<DVec2> {
+    let radius = |i: usize| if i.is_multiple_of(2) { 1.0 } else { 100.0 };
+    (0..2 * count).map(|i| radius(i) * DVec2::from_angle(3.14 * i as f64 / count as f64)).collect()
+}
+
+fn blades(count: usize) -> Vec<Vec<DVec2>> {
+    let side = |k: f64| 100.0 * DVec2::from_angle(1.5 * k / count as f64);
+    (0..count).map(|i| vec![DVec2::ZERO, side(i as f64), side(i as f64 + 0.5)]).collect()
+}
+
+fn bristly(count: usize) -> [Vec<Vec<DVec2>>; 5] {
+    [vec![comb(count, 0.0)], vec![comb(count, 1.6)], vec![comb(count, 0.7)], vec![rays(count)], blades(count)]
+}
+
+#[test]
+fn values_of_combs_and_fans_are_distances() {
+    let mut numbers = Numbers(8);
+    for (number, contours) in bristly(120).into_iter().enumerate() {
+        let polygon = Polygon::of_points(&contours);
+        assert_eq!(polygon.check(), Ok(()));
+        let corners = contours.iter().flatten().flat_map(|p| [*p, *p + DVec2::X, *p - 3.0 * DVec2::Y]);
+        for p in (0..400).map(|_| numbers.point(130.0)).chain(corners).collect::<Vec<_>>() {
+            let (want, got) = (direct(&contours, p), value(&polygon, p));
+            assert!((got - want).abs() < 1e-12, "{number} at {p}: {got}, want {want}");
+        }
+    }
+}
+
+#[test]
+fn values_of_combs_and_fans_take_few_steps() {
+    let seconds = |contours: &[Vec<DVec2>]| {
+        let polygon = Polygon::of_points(contours);
+        assert_eq!(polygon.check(), Ok(()));
+        let corners: Vec<DVec2> = contours.iter().flatten().copied().collect();
+        let mut numbers = Numbers(9);
+        // About the polygon, and beside what its middle is.
+        let at = |numbers: &mut Numbers| corners[(numbers.unit() * corners.len() as f64) as usize];
+        let points: Vec<DVec2> =
+            (0..400).map(|_| at(&mut numbers).lerp(at(&mut numbers), 1.2 * numbers.unit() - 0.1)).collect();
+        let round = || {
+            let start = std::time::Instant::now();
+            assert!(points.iter().map(|p| value(&polygon, *p)).sum::<f64>().is_finite());
+            start.elapsed().as_secs_f64()
+        };
+        (0..5).map(|_| round()).fold(f64::INFINITY, f64::min)
+    };
+    for (number, (few, many)) in bristly(200).into_iter().zip(bristly(20_000)).enumerate() {
+        let [few, many] = [few, many].map(|contours| seconds(&contours));
+        // A hundred times the edges.
+        assert!(many < 12.0 * few, "{number}: {} times", many / few);
+    }
+}
