@@ -19,7 +19,9 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::text::Number;
 use super::unit::LengthUnit;
+use super::watched::{size, watched};
 use super::{SaveSettings, too_many};
+use crate::Run;
 use crate::geom::Mesh;
 
 const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -58,6 +60,20 @@ const LARGE: usize = 1 << 31;
 /// Those of the writer, and [`io::ErrorKind::InvalidInput`] for a triangle with a repeated
 /// index, which the format does not allow, and for more than 2³¹ − 2 vertices or triangles.
 pub fn write_3mf(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::Result<()> {
+    write_3mf_on(mesh, settings, &Run::default(), out)
+}
+
+/// [`write_3mf`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_3mf`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_3mf_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
+    watched(size(mesh), run, out, |_, out| written(mesh, settings, out))
+}
+
+fn written(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::Result<()> {
     if mesh.positions().len().max(mesh.triangles().len()) > MOST {
         return Err(too_many("3MF"));
     }
