@@ -14,6 +14,7 @@ mod fill;
 mod levels;
 mod near;
 mod patch;
+mod snap;
 mod sweep;
 mod tree;
 
@@ -50,7 +51,9 @@ use tree::Tree;
 ///
 /// Contours may touch themselves and one another, at corners or along edges: what two of them have
 /// in common is no border, as between two squares side by side, or on the two ways of a bridge that
-/// leads to a hole. Edges do not cross; coordinates are within ±10⁹ and edges at least 10⁻⁹ long.
+/// leads to a hole. Corners are one that are nearer to each other than 2·10⁻¹² of the size of the
+/// whole (and rounding, far from the origin), and an edge that passes a corner so near leads through
+/// it: so much may be rounded where a drawing is turned or written. Edges do not cross; coordinates are within ±10⁹ and edges at least 10⁻⁹ long.
 /// What is wrong is found by exact arithmetic and said when the profile is compiled: with the
 /// contour, the edge and the point. Until then nothing is computed; n edges take some n log n
 /// steps, and one more for each pair that lies on one another.
@@ -212,7 +215,7 @@ impl Border {
             Err(error) => (Vec::new(), Some(error)),
         };
         run.check()?;
-        let tree = Tree::build(&mut edges);
+        let tree = Tree::build(&mut edges, |edge| edge);
         let levels = Levels::new(&edges, run)?;
         let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for edge in &edges {

@@ -42,16 +42,16 @@ struct Node {
 
 impl Node {
     /// The box about edges, without what it holds.
-    fn about(edges: &[Edge]) -> Node {
-        let origin = edges.first().map_or(DVec2::ZERO, |edge| edge.start);
+    fn about<T>(items: &[T], of: impl Fn(&T) -> &Edge) -> Node {
+        let edges = || items.iter().map(&of);
+        let origin = edges().next().map_or(DVec2::ZERO, |edge| edge.start);
         // Directions have no sense: twice the angle tells them.
-        let twice = edges
-            .iter()
+        let twice = edges()
             .fold(DVec2::ZERO, |sum, edge| sum + (edge.end - edge.start).length() * edge.along.rotate(edge.along));
         let along = DVec2::from_angle(0.5 * twice.to_angle());
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for p in edges.iter().flat_map(|edge| [edge.start, edge.end]) {
+        for p in edges().flat_map(|edge| [edge.start, edge.end]) {
             (min, max) = (min.min(p), max.max(p));
             let p = seen(along, p - origin);
             (low, high) = (low.min(p), high.max(p));
@@ -69,7 +69,7 @@ impl Node {
     }
 
     /// The direction in which the middles of the edges are spread most.
-    fn spread(&self, edges: &[Edge]) -> DVec2 {
+    fn spread<'e>(&self, edges: impl Iterator<Item = &'e Edge>) -> DVec2 {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for edge in edges {
             let middle = seen(self.along, edge.middle() - self.centre);
@@ -89,12 +89,12 @@ fn seen(along: DVec2, v: DVec2) -> DVec2 {
 const WAITING: usize = 40;
 
 impl Tree {
-    /// The tree over edges, which are put into its order.
-    pub(super) fn build(edges: &mut [Edge]) -> Tree {
+    /// The tree over edges, `of` items, which are put into its order.
+    pub(super) fn build<T>(edges: &mut [T], of: impl Fn(&T) -> &Edge) -> Tree {
         let mut nodes = Vec::new();
         let mut open = Vec::new();
         if !edges.is_empty() {
-            nodes.push(Node::about(edges));
+            nodes.push(Node::about(edges, &of));
             open.push((0, 0..edges.len()));
         }
         while let Some((at, range)) = open.pop() {
@@ -103,13 +103,13 @@ impl Tree {
                 (nodes[at].first, nodes[at].count) = (range.start as u32, part.len() as u32);
                 continue;
             }
-            let (middle, way) = (part.len() / 2, nodes[at].spread(part));
-            let key = |edge: &Edge| way.dot(edge.middle());
+            let (middle, way) = (part.len() / 2, nodes[at].spread(part.iter().map(&of)));
+            let key = |item: &T| way.dot(of(item).middle());
             part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
             let first = nodes.len();
             nodes[at].first = first as u32;
             let (before, after) = part.split_at(middle);
-            nodes.extend([before, after].map(Node::about));
+            nodes.extend([before, after].map(|part| Node::about(part, &of)));
             open.push((first, range.start..range.start + middle));
             open.push((first + 1, range.start + middle..range.end));
         }
