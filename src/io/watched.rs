@@ -43,11 +43,14 @@ pub(super) fn watched<W: Write>(
     out: W,
     write: impl FnOnce(&Run, &mut Watched<'_, W>) -> io::Result<()>,
 ) -> io::Result<()> {
+    staged(run, |run| write(run, &mut Watched::new(out, BYTES * count as u64, run)))
+}
+
+/// Writes on a run: what is told on the way is not yet all.
+pub(super) fn staged(run: &Run, write: impl FnOnce(&Run) -> io::Result<()>) -> io::Result<()> {
     let run = run.stage(0.0, 1.0);
     run.check().map_err(io::Error::other)?;
-    // Bytes are counted as the part of the run that they are.
-    let to_write = run.stage(0.0, 0.95);
-    write(&to_write, &mut Watched::new(out, BYTES * count as u64, &to_write))?;
+    write(&run.stage(0.0, 0.95))?;
     run.report(1.0);
     Ok(())
 }
