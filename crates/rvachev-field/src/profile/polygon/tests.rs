@@ -367,7 +367,7 @@ fn comb(teeth: usize, turn: f64) -> Vec<DVec2> {
 /// Rays about a point, and blades that all begin at one.
 fn rays(count: usize) -> Vec<DVec2> {
     let radius = |i: usize| if i.is_multiple_of(2) { 1.0 } else { 100.0 };
-    (0..2 * count).map(|i| radius(i) * DVec2::from_angle(3.14 * i as f64 / count as f64)).collect()
+    (0..2 * count).map(|i| radius(i) * DVec2::from_angle(3.1 * i as f64 / count as f64)).collect()
 }
 
 fn blades(count: usize) -> Vec<Vec<DVec2>> {
