@@ -92,7 +92,7 @@
 //! let report = cup.thickness(&MeshSettings::default(), &Run::default())?;
 //! assert!((report.least - 0.8).abs() < 0.02);
 //! println!("{report}, {:.0} % below 1 mm", 100.0 * report.share_below(1.0)?);
-//! # Ok::<(), rvachev::error::MeshingError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! ## Clearance and overlap

@@ -61,7 +61,7 @@ impl Solid {
     /// assert!((report.least - 0.8).abs() < 0.02 && report.at.z > -8.0);
     /// // Most of the surface is the wall's.
     /// assert!(report.share_below(1.0)? > 0.6 && report.share_below(0.5)? == 0.0);
-    /// # Ok::<(), rvachev::error::MeshingError>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Details
