@@ -51,7 +51,17 @@ fn post(blend: Blend) -> Solid {
     Solid::cuboid([2.0, 2.0, 0.4]).union_with(Solid::cylinder(0.5, 2.0), blend)
 }
 
-const ROWS: [Row; 11] = [
+fn curved(blend: Blend) -> Solid {
+    Solid::cuboid([2.0, 2.0, 0.4]).union_with(Solid::superellipsoid([0.5, 0.5, 1.0], 0.3, 0.7), blend)
+}
+
+/// A plate with many holes, all of it by true distance.
+fn pins() -> Solid {
+    let holes = Solid::cylinder(0.3, 4.0).repeat([10, 8, 1], [1.5, 1.5, 1.0]);
+    (Solid::cuboid([20.0, 14.0, 2.0]) - holes).offset(0.1)
+}
+
+const ROWS: [Row; 17] = [
     ("perforated plate", plate, 0.0, 0.01),
     ("polygon of 2000 edges", gear, 0.1, 1e-4),
     ("superellipsoid", || Solid::superellipsoid([30.0, 20.0, 10.0], 0.3, 0.4), 0.1, 1e-3),
@@ -63,6 +73,12 @@ const ROWS: [Row; 11] = [
     ("fillet", || post(Blend::Fillet { radius: 0.15 }), 0.25, 1e-4),
     ("chamfer", || post(Blend::Chamfer { leg: 0.15 }), 0.25, 1e-4),
     ("shell", || block().shell(1.0), 0.5, 1e-3),
+    ("shell of a curved one", || Solid::superellipsoid([30.0, 20.0, 10.0], 0.3, 0.4).shell(1.0), 0.1, 1e-3),
+    ("rounded", || block().rounded(1.0), 0.5, 1e-3),
+    ("filleted", || block().filleted(1.0), 0.5, 1e-3),
+    ("pins moved out", pins, 0.5, 1e-3),
+    ("joint of a curved one", || curved(Blend::Fillet { radius: 0.15 }), 0.25, 1e-4),
+    ("chamfer of a curved one", || curved(Blend::Chamfer { leg: 0.15 }), 0.25, 1e-4),
 ];
 
 /// CPU milliseconds of a job.

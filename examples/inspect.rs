@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             if leaf.is_off() { "  off" } else { "" }
         );
     }
-    println!("within 0.1: {:.1} %", 100.0 * report.share_within(0.1));
+    println!("within 0.1: {:.1} %", 100.0 * report.share_within(0.1)?);
     let folder = std::path::Path::new(&folder);
     report.colored(&scan, 0.4)?.save(folder.join("inspect.ply"))?;
     let camera = Camera::framing(&found.place(&model).bounds()?);

@@ -147,7 +147,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         println!("  what is thinner than a cell of its mesh may be missing");
     }
     for limit in limits(thickness.least).into_iter().filter(|limit| limit.is_finite()) {
-        let share = 100.0 * thickness.share_below(limit);
+        let share = 100.0 * thickness.share_below(limit)?;
         println!("  thinner than {} mm: {share:.1} % of the surface", figures(limit));
     }
     println!("{}: red where it is thinnest, blue where it is thick", path.display());

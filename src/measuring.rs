@@ -91,8 +91,8 @@
 //! let cup = Solid::cylinder(8.0, 20.0) - Solid::cylinder(7.2, 20.0).translate([0.0, 0.0, 2.0]);
 //! let report = cup.thickness(&MeshSettings::default(), &Run::default())?;
 //! assert!((report.least - 0.8).abs() < 0.02);
-//! println!("{report}, {:.0} % below 1 mm", 100.0 * report.share_below(1.0));
-//! # Ok::<(), rvachev::error::MeshingError>(())
+//! println!("{report}, {:.0} % below 1 mm", 100.0 * report.share_below(1.0)?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! ## Clearance and overlap

@@ -95,7 +95,7 @@ impl LeafDeviation {
 /// let report = inspect(&Solid::sphere(1.0), &scan)?;
 /// let ball = &report.leaves()[0];
 /// assert!((ball.shift.x - 0.02).abs() < 1e-3 && ball.growth.abs() < 1e-3 && ball.is_off());
-/// assert!(report.share_within(0.021) == 1.0);
+/// assert!(report.share_within(0.021)? == 1.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn inspect(solid: &Solid, cloud: &PointCloud) -> Result<Deviations, FitError> {
@@ -153,17 +153,27 @@ impl Deviations {
         &self.leaves
     }
 
-    /// The share of the points that are no further from the surface than that.
-    #[must_use]
-    pub fn share_within(&self, tolerance: f64) -> f64 {
+    /// The share of the points, 0 to 1, that are no further from the surface than a length.
+    ///
+    /// # Errors
+    ///
+    /// If the length is NaN.
+    pub fn share_within(&self, tolerance: f64) -> Result<f64, FitError> {
+        if tolerance.is_nan() {
+            return Err(setting("tolerance", tolerance, "any number"));
+        }
         let within = self.signed.iter().filter(|d| d.abs() <= tolerance).count();
-        within as f64 / self.signed.len() as f64
+        Ok(within as f64 / self.signed.len() as f64)
     }
 
     /// How many deviations are in each of `bins` parts of the range from −`reach` to `reach`; those
     /// beyond are counted at the ends. Nothing for no bins; at most a million.
-    #[must_use]
-    pub fn histogram(&self, reach: f64, bins: usize) -> Vec<usize> {
+    ///
+    /// # Errors
+    ///
+    /// If the reach is not finite and above 0.
+    pub fn histogram(&self, reach: f64, bins: usize) -> Result<Vec<usize>, FitError> {
+        check_reach(reach)?;
         let bins = bins.min(1_000_000);
         let mut counts = vec![0; bins];
         if bins > 0 {
@@ -172,17 +182,26 @@ impl Deviations {
                 counts[(at as usize).min(bins - 1)] += 1;
             }
         }
-        counts
+        Ok(counts)
     }
 
     /// The cloud, coloured by its deviations: blue at −`reach`, white at 0, red at `reach`.
     ///
     /// # Errors
     ///
-    /// If the cloud has another number of points.
-    pub fn colored(&self, cloud: &PointCloud, reach: f64) -> Result<PointCloud, crate::error::PointCloudError> {
-        cloud.clone().with_colors(self.signed.iter().map(|d| color(*d, reach)).collect())
+    /// If the cloud has another number of points, or the reach is not finite and above 0.
+    pub fn colored(&self, cloud: &PointCloud, reach: f64) -> Result<PointCloud, FitError> {
+        check_reach(reach)?;
+        Ok(cloud.clone().with_colors(self.signed.iter().map(|d| color(*d, reach)).collect())?)
     }
+}
+
+fn check_reach(reach: f64) -> Result<(), FitError> {
+    if reach > 0.0 && reach.is_finite() { Ok(()) } else { Err(setting("reach", reach, "finite and above 0")) }
+}
+
+fn setting(setting: &'static str, value: f64, allowed: &'static str) -> FitError {
+    FitError::Setting { setting, value: value.to_string(), allowed }
 }
 
 /// Blue at −`reach` and beyond, white at 0, red at `reach` and beyond.

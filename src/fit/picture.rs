@@ -56,16 +56,13 @@ impl Deviations {
         width: u32,
         height: u32,
     ) -> Result<Image, FitError> {
-        if !(reach > 0.0 && reach.is_finite()) {
-            return Err(FitError::Setting { setting: "reach", value: reach.to_string(), allowed: "above 0" });
-        }
+        let colored = self.colored(cloud, reach)?;
         for (setting, value) in [("width", width), ("height", height)] {
             if !(1..=LARGEST).contains(&value) {
                 return Err(FitError::Setting { setting, value: value.to_string(), allowed: "1 to 16384" });
             }
         }
         camera.check()?;
-        let colored = self.colored(cloud, reach)?;
         let lens = camera.intrinsics(width, height);
         let to_camera = camera.pose().inverse();
         let mut pixels = vec![BACKGROUND; width as usize * height as usize];

@@ -9,7 +9,12 @@ pub(super) fn write_exr_on<P>(_: &crate::geom::Image<P>, _: &crate::Run, _: impl
 }
 
 #[cfg(not(feature = "threemf"))]
-pub(super) fn write_3mf(_: &crate::geom::Mesh, _: &super::SaveSettings, _: impl Write) -> io::Result<()> {
+pub(super) fn write_3mf_on(
+    _: &crate::geom::Mesh,
+    _: &super::SaveSettings,
+    _: &crate::Run,
+    _: impl Write,
+) -> io::Result<()> {
     Err(lacks("threemf"))
 }
 

@@ -45,8 +45,13 @@ pub fn write_svg(lines: &[Polyline], out: impl Write) -> io::Result<()> {
     write_svg_on(lines, &Run::default(), out)
 }
 
-/// The same on a run: told how many points are written, and cancelled at each.
-pub(super) fn write_svg_on(lines: &[Polyline], run: &Run, mut out: impl Write) -> io::Result<()> {
+/// [`write_svg`] on a [`Run`], which is told how many points are written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_svg`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_svg_on(lines: &[Polyline], run: &Run, mut out: impl Write) -> io::Result<()> {
     let meter = metered(lines, run)?;
     check(lines)?;
     let points = || lines.iter().flat_map(|line| line.points());
@@ -106,8 +111,13 @@ pub fn write_dxf(lines: &[Polyline], out: impl Write) -> io::Result<()> {
     write_dxf_on(lines, &Run::default(), out)
 }
 
-/// The same on a run: told how many points are written, and cancelled at each.
-pub(super) fn write_dxf_on(lines: &[Polyline], run: &Run, mut out: impl Write) -> io::Result<()> {
+/// [`write_dxf`] on a [`Run`], which is told how many points are written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_dxf`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_dxf_on(lines: &[Polyline], run: &Run, mut out: impl Write) -> io::Result<()> {
     let meter = metered(lines, run)?;
     check(lines)?;
     let mut pair = |code: u32, value: &dyn std::fmt::Display| write!(out, "{code}\n{value}\n");

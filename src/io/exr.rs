@@ -77,8 +77,13 @@ pub fn write_exr<P: Floats>(image: &Image<P>, out: impl Write) -> io::Result<()>
     write_exr_on(image, &Run::default(), out)
 }
 
-/// The same on a run: told how much is compressed, and cancelled at each block of rows.
-pub(super) fn write_exr_on<P: Floats>(image: &Image<P>, run: &Run, mut out: impl Write) -> io::Result<()> {
+/// [`write_exr`] on a [`Run`], which is told how much is compressed, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_exr`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_exr_on<P: Floats>(image: &Image<P>, run: &Run, mut out: impl Write) -> io::Result<()> {
     run.check().map_err(io::Error::other)?;
     let channel = |index: usize| {
         let samples = image.pixels().iter().map(|pixel| pixel.channel(index)).collect();

@@ -20,8 +20,13 @@ pub fn write_gif(pictures: &[Image], pause: Duration, out: impl Write) -> io::Re
     write_gif_on(pictures, pause, &Run::default(), out)
 }
 
-/// The same on a run: told how many pictures are written, and cancelled at each.
-pub(super) fn write_gif_on(pictures: &[Image], pause: Duration, run: &Run, out: impl Write) -> io::Result<()> {
+/// [`write_gif`] on a [`Run`], which is told how many pictures are written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_gif`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_gif_on(pictures: &[Image], pause: Duration, run: &Run, out: impl Write) -> io::Result<()> {
     if pictures.is_empty() {
         return Err(io::Error::other("no picture to write"));
     }

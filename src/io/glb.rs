@@ -25,6 +25,7 @@ use glam::Vec3;
 use super::normal::corner_normal;
 use super::split::Split;
 use super::unit::LengthUnit;
+use super::watched::{size, watched};
 use super::{SaveSettings, too_many};
 use crate::Run;
 use crate::geom::Mesh;
@@ -55,8 +56,17 @@ pub fn write_glb(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::R
     write_glb_on(mesh, settings, &Run::default(), out)
 }
 
-/// The same, which ends where a run is cancelled.
-pub(super) fn write_glb_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
+/// [`write_glb`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_glb`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_glb_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
+    watched(size(mesh), run, out, |run, out| written(mesh, settings, run, out))
+}
+
+fn written(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
     let carried = |corner: usize, _| {
         let (t, k) = (corner / 3, corner % 3);
         let normal = corner_normal(mesh, corner).map(|n| n.to_array().map(f32::to_bits));

@@ -36,6 +36,9 @@
 //! | [`PointCloud`](crate::PointCloud) | `.ply` | binary PLY, see [`write_ply_points`] | normals |
 //! | [`Polyline`](crate::Polyline)s | `.svg`, `.dxf` | see [`write_svg`] and [`write_dxf`] | |
 //!
+//! Each of them has a second form on a [`Run`](crate::Run), which is told how far it is and may be
+//! cancelled ([`write_stl_on`]); what saves to a path has it too ([`Mesh::save_on`](crate::Mesh::save_on)).
+//!
 //! No writer joins vertices by their position, and only GLB splits them: where the corners of
 //! a vertex carry different normals, colours or texture coordinates.
 
@@ -65,22 +68,22 @@ mod watched;
 
 use std::io;
 
-pub use drawing::{write_dxf, write_svg};
+pub use drawing::{write_dxf, write_dxf_on, write_svg, write_svg_on};
 #[cfg(feature = "exr")]
-pub use exr::{Floats, write_exr};
-pub use gif::write_gif;
-pub use glb::write_glb;
-pub use obj::write_obj;
-pub use ply::write_ply;
-pub use png::{Colors, write_png};
-pub use points::write_ply_points;
+pub use exr::{Floats, write_exr, write_exr_on};
+pub use gif::{write_gif, write_gif_on};
+pub use glb::{write_glb, write_glb_on};
+pub use obj::{write_obj, write_obj_on};
+pub use ply::{write_ply, write_ply_on};
+pub use png::{Colors, write_png, write_png_on};
+pub use points::{write_ply_points, write_ply_points_on};
 #[cfg(feature = "import")]
 pub use read::{FileFormat, FilePlace, LoadError, LoadSettings, ReadError};
 pub use save::Pixel;
 pub(crate) use save::{SaveSettings, save_rows};
-pub use stl::{write_stl, write_stl_ascii};
+pub use stl::{write_stl, write_stl_ascii, write_stl_ascii_on, write_stl_on};
 #[cfg(feature = "threemf")]
-pub use threemf::write_3mf;
+pub use threemf::{write_3mf, write_3mf_on};
 pub(crate) use unit::LengthUnit;
 
 /// The error for a mesh that is too large for a format.

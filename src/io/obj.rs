@@ -21,6 +21,7 @@ use super::SaveSettings;
 use super::normal::corner_normal;
 use super::split::Split;
 use super::text::{Number, Numbers};
+use super::watched::{size, watched};
 use crate::Run;
 use crate::geom::Mesh;
 
@@ -48,8 +49,17 @@ pub fn write_obj(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::R
     write_obj_on(mesh, settings, &Run::default(), out)
 }
 
-/// The same, which ends where a run is cancelled.
-pub(super) fn write_obj_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
+/// [`write_obj`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_obj`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_obj_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
+    watched(size(mesh), run, out, |run, out| written(mesh, settings, run, out))
+}
+
+fn written(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
     let mut out = BufWriter::with_capacity(1 << 16, out);
     writeln!(out, "# written by rvachev")?;
     for p in mesh.positions() {

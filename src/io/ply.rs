@@ -21,6 +21,8 @@ use std::io::{self, BufWriter, Write};
 use glam::Vec3;
 
 use super::normal::corner_normal;
+use super::watched::{size, watched};
+use crate::Run;
 use crate::geom::Mesh;
 
 /// Writes a mesh as binary PLY, with normals, colours and owners if it has them. The writer
@@ -42,6 +44,20 @@ use crate::geom::Mesh;
 ///
 /// Those of the writer.
 pub fn write_ply(mesh: &Mesh, out: impl Write) -> io::Result<()> {
+    write_ply_on(mesh, &Run::default(), out)
+}
+
+/// [`write_ply`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_ply`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_ply_on(mesh: &Mesh, run: &Run, out: impl Write) -> io::Result<()> {
+    watched(size(mesh), run, out, |_, out| written(mesh, out))
+}
+
+fn written(mesh: &Mesh, out: impl Write) -> io::Result<()> {
     let mut out = BufWriter::with_capacity(1 << 16, out);
     let normals = vertex_normals(mesh);
     let colors = mesh.corner_colors().map(|colors| Colors::new(mesh, colors));

@@ -64,8 +64,13 @@ pub fn write_png<P: Colors>(image: &Image<P>, out: impl Write) -> io::Result<()>
     write_png_on(image, &Run::default(), out)
 }
 
-/// The same on a run: told how many rows are written, and cancelled at each.
-pub(super) fn write_png_on<P: Colors>(image: &Image<P>, run: &Run, out: impl Write) -> io::Result<()> {
+/// [`write_png`] on a [`Run`], which is told how many rows are written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_png`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_png_on<P: Colors>(image: &Image<P>, run: &Run, out: impl Write) -> io::Result<()> {
     run.check().map_err(io::Error::other)?;
     let Coded { color, depth, row } = P::coded(image)?;
     let mut encoder = Encoder::new(out, image.width(), image.height());

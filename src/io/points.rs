@@ -7,6 +7,8 @@
 
 use std::io::{self, BufWriter, Write};
 
+use super::watched::watched;
+use crate::Run;
 use crate::geom::PointCloud;
 
 /// Writes a point cloud as PLY. The writer need not be buffered.
@@ -26,6 +28,20 @@ use crate::geom::PointCloud;
 ///
 /// Those of the writer.
 pub fn write_ply_points(cloud: &PointCloud, out: impl Write) -> io::Result<()> {
+    write_ply_points_on(cloud, &Run::default(), out)
+}
+
+/// [`write_ply_points`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_ply_points`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_ply_points_on(cloud: &PointCloud, run: &Run, out: impl Write) -> io::Result<()> {
+    watched(cloud.len(), run, out, |_, out| written(cloud, out))
+}
+
+fn written(cloud: &PointCloud, out: impl Write) -> io::Result<()> {
     let mut out = BufWriter::with_capacity(1 << 16, out);
     writeln!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}", cloud.len())?;
     for axis in ["x", "y", "z"] {

@@ -7,8 +7,9 @@ use std::time::Duration;
 
 use glam::{DVec3, Vec3};
 
+use super::LengthUnit;
 #[cfg(not(feature = "threemf"))]
-use super::absent::write_3mf;
+use super::absent::write_3mf_on;
 #[cfg(not(feature = "exr"))]
 use super::absent::write_exr_on;
 use super::drawing::{write_dxf_on, write_svg_on};
@@ -18,11 +19,12 @@ use super::file::write_whole;
 use super::gif::write_gif_on;
 use super::glb::write_glb_on;
 use super::obj::write_obj_on;
+use super::ply::write_ply_on;
 use super::png::{Rows, write_png_on, write_png_rows};
-use super::watched::Watched;
+use super::points::write_ply_points_on;
+use super::stl::{write_stl_ascii_on, write_stl_on};
 #[cfg(feature = "threemf")]
-use super::write_3mf;
-use super::{LengthUnit, write_ply, write_ply_points, write_stl, write_stl_ascii};
+use super::threemf::write_3mf_on;
 use crate::geom::{Image, Mesh, PointCloud, Polyline};
 use crate::{Cancelled, Run};
 
@@ -98,21 +100,21 @@ pub struct SaveSettings {
 }
 
 /// A writer of one format, for `T` by settings `S`.
-type Writer<T, S> = fn(&T, &S, &mut Watched<'_, &mut BufWriter<File>>) -> io::Result<()>;
+type Writer<T, S> = fn(&T, &S, &Run, &mut BufWriter<File>) -> io::Result<()>;
 
 /// Pictures, and how long each is shown.
 type Animation<'a> = (&'a [Image], Duration);
 
-/// Bytes of a file to a vertex, a point or a triangle, about.
-const BYTES: u64 = 30;
-
 /// The formats of a mesh, by extension.
 const MESH_FORMATS: [(&str, Writer<Mesh, SaveSettings>); 5] = [
-    ("3mf", |mesh, settings, out| write_3mf(mesh, settings, out)),
-    ("glb", |mesh, settings, out| write_glb_on(mesh, settings, out.run(), out)),
-    ("obj", |mesh, settings, out| write_obj_on(mesh, settings, out.run(), out)),
-    ("ply", |mesh, _, out| write_ply(mesh, out)),
-    ("stl", |mesh, settings, out| if settings.ascii { write_stl_ascii(mesh, out) } else { write_stl(mesh, out) }),
+    ("3mf", |mesh, settings, run, out| write_3mf_on(mesh, settings, run, out)),
+    ("glb", |mesh, settings, run, out| write_glb_on(mesh, settings, run, out)),
+    ("obj", |mesh, settings, run, out| write_obj_on(mesh, settings, run, out)),
+    ("ply", |mesh, _, run, out| write_ply_on(mesh, run, out)),
+    ("stl", |mesh, settings, run, out| match settings.ascii {
+        true => write_stl_ascii_on(mesh, run, out),
+        false => write_stl_on(mesh, run, out),
+    }),
 ];
 
 impl Mesh {
@@ -171,8 +173,7 @@ impl Mesh {
     ///
     /// [`SaveError`], naming the file and the cause, or that the work was cancelled.
     pub fn save_on(&self, path: impl AsRef<Path>, settings: &SaveSettings, run: &Run) -> Result<(), SaveError> {
-        let count = self.positions().len() as u64 + self.triangles().len() as u64;
-        save(self, settings, path.as_ref(), &MESH_FORMATS, count * BYTES, run)
+        save(self, settings, path.as_ref(), &MESH_FORMATS, run)
     }
 }
 
@@ -191,7 +192,7 @@ macro_rules! pixel {
         impl Pixel for $pixel {}
         impl sealed::Pixel for $pixel {
             const FORMATS: &'static [(&'static str, Writer<Image<Self>, ()>)] =
-                &[$(($extension, |image, (), out| $write(image, out.run(), out))),*];
+                &[$(($extension, |image, (), run, out| $write(image, run, out))),*];
         }
     )*};
 }
@@ -243,7 +244,7 @@ impl<P: Pixel> Image<P> {
     ///
     /// [`SaveError`], naming the file and the cause, or that the work was cancelled.
     pub fn save_on(&self, path: impl AsRef<Path>, run: &Run) -> Result<(), SaveError> {
-        save(self, &(), path.as_ref(), P::FORMATS, 0, run)
+        save(self, &(), path.as_ref(), P::FORMATS, run)
     }
 }
 
@@ -284,8 +285,8 @@ impl Image {
         run: &Run,
     ) -> Result<(), SaveError> {
         let formats: &[(&str, Writer<Animation<'_>, ()>)] =
-            &[("gif", |(pictures, pause), (), out| write_gif_on(pictures, *pause, out.run(), out))];
-        save(&(pictures, pause), &(), path.as_ref(), formats, 0, run)
+            &[("gif", |(pictures, pause), (), run, out| write_gif_on(pictures, *pause, run, out))];
+        save(&(pictures, pause), &(), path.as_ref(), formats, run)
     }
 }
 
@@ -308,8 +309,9 @@ impl PointCloud {
     ///
     /// [`SaveError`], naming the file and the cause, or that the work was cancelled.
     pub fn save_on(&self, path: impl AsRef<Path>, run: &Run) -> Result<(), SaveError> {
-        let formats: &[(&str, Writer<PointCloud, ()>)] = &[("ply", |cloud, (), out| write_ply_points(cloud, out))];
-        save(self, &(), path.as_ref(), formats, self.len() as u64 * BYTES, run)
+        let formats: &[(&str, Writer<PointCloud, ()>)] =
+            &[("ply", |cloud, (), run, out| write_ply_points_on(cloud, run, out))];
+        save(self, &(), path.as_ref(), formats, run)
     }
 }
 
@@ -347,27 +349,25 @@ impl Polyline {
     /// [`SaveError`], naming the file and the cause, or that the work was cancelled.
     pub fn save_all_on(lines: &[Polyline], path: impl AsRef<Path>, run: &Run) -> Result<(), SaveError> {
         let formats: &[(&str, Writer<&[Polyline], ()>)] = &[
-            ("dxf", |lines, (), out| write_dxf_on(lines, out.run(), out)),
-            ("svg", |lines, (), out| write_svg_on(lines, out.run(), out)),
+            ("dxf", |lines, (), run, out| write_dxf_on(lines, run, out)),
+            ("svg", |lines, (), run, out| write_svg_on(lines, run, out)),
         ];
-        save(&lines, &(), path.as_ref(), formats, 0, run)
+        save(&lines, &(), path.as_ref(), formats, run)
     }
 }
 
-/// Saves `data` with the writer that `formats` has for the extension, in upper or lower case: so
-/// many `bytes`, about; 0 if the writer itself tells how far it is.
+/// Saves `data` with the writer that `formats` has for the extension, in upper or lower case.
 fn save<T, S>(
     data: &T,
     settings: &S,
     path: &Path,
     formats: &[(&str, Writer<T, S>)],
-    bytes: u64,
     run: &Run,
 ) -> Result<(), SaveError> {
     let known: Vec<&str> = formats.iter().map(|(known, _)| *known).collect();
     let (_, write) = formats[format_of(path, &known)?];
     let run = run.stage(0.0, 1.0);
-    let saved = saved(path, |out| write(data, settings, &mut Watched::new(out, bytes, &run.stage(0.0, 0.95))));
+    let saved = saved(path, |out| write(data, settings, &run.stage(0.0, 0.95), out));
     // A writer that is stopped has failed.
     saved.map_err(|error| run.check().map_or_else(SaveError::Cancelled, |()| error))?;
     run.report(1.0);

@@ -26,10 +26,15 @@ use std::io::{self, BufWriter, Write};
 
 use super::text::Numbers;
 use super::too_many;
+use super::watched::{size, watched};
+use crate::Run;
 use crate::geom::Mesh;
 
 /// Facets that are put together before they are handed to the writer.
 const CHUNK: usize = 1024;
+
+/// How much larger the text is.
+const ASCII: usize = 5;
 
 /// Writes a mesh as binary STL, in large pieces: the writer need not be buffered.
 ///
@@ -76,6 +81,32 @@ pub fn write_stl(mesh: &Mesh, mut out: impl Write) -> io::Result<()> {
     out.flush()
 }
 
+/// [`write_stl`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_stl`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+///
+/// ```
+/// use rvachev::io::write_stl_on;
+/// use rvachev::{Cancelled, MeshSettings, Run, Solid};
+///
+/// let mesh = Solid::sphere(1.0).mesh(&MeshSettings::default())?;
+/// let mut bytes = Vec::new();
+/// write_stl_on(&mesh, &Run::default(), &mut bytes)?;
+/// assert_eq!(bytes.len(), 84 + 50 * mesh.triangles().len());
+///
+/// let run = Run::default();
+/// run.cancel.cancel();
+/// let error = write_stl_on(&mesh, &run, &mut bytes).unwrap_err();
+/// assert!(error.get_ref().is_some_and(|inner| inner.is::<Cancelled>()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_stl_on(mesh: &Mesh, run: &Run, out: impl Write) -> io::Result<()> {
+    watched(size(mesh), run, out, |_, out| write_stl(mesh, out))
+}
+
 /// Writes a mesh as STL in text, for programs that do not read the binary form: five times as
 /// large. The writer need not be buffered.
 ///
@@ -91,6 +122,16 @@ pub fn write_stl_ascii(mesh: &Mesh, out: impl Write) -> io::Result<()> {
     }
     writeln!(out, "endsolid rvachev")?;
     out.flush()
+}
+
+/// [`write_stl_ascii`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_stl_ascii`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_stl_ascii_on(mesh: &Mesh, run: &Run, out: impl Write) -> io::Result<()> {
+    watched(ASCII * size(mesh), run, out, |_, out| write_stl_ascii(mesh, out))
 }
 
 /// Unit normal and corners.

@@ -19,7 +19,9 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::text::Number;
 use super::unit::LengthUnit;
+use super::watched::{Watched, size, staged};
 use super::{SaveSettings, too_many};
+use crate::Run;
 use crate::geom::Mesh;
 
 const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -58,6 +60,21 @@ const LARGE: usize = 1 << 31;
 /// Those of the writer, and [`io::ErrorKind::InvalidInput`] for a triangle with a repeated
 /// index, which the format does not allow, and for more than 2³¹ − 2 vertices or triangles.
 pub fn write_3mf(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::Result<()> {
+    write_3mf_on(mesh, settings, &Run::default(), out)
+}
+
+/// [`write_3mf`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+///
+/// # Errors
+///
+/// Those of [`write_3mf`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// what is written by then is no whole file.
+pub fn write_3mf_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
+    // How far it is is told by the text, not by the archive, in which it is a fifth as long.
+    staged(run, |run| written(mesh, settings, run, out))
+}
+
+fn written(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
     if mesh.positions().len().max(mesh.triangles().len()) > MOST {
         return Err(too_many("3MF"));
     }
@@ -78,12 +95,16 @@ pub fn write_3mf(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::R
     archive.start_file("_rels/.rels", options)?;
     archive.write_all(RELATIONS.as_bytes())?;
     archive.start_file("3D/3dmodel.model", options.large_file(text > LARGE))?;
-    let mut model = BufWriter::with_capacity(1 << 16, &mut archive);
+    let text = Watched::new(&mut archive, LINE * size(mesh) as u64, run);
+    let mut model = BufWriter::with_capacity(1 << 16, text);
     write_model(mesh, settings.unit, &mut model)?;
     model.flush()?;
     drop(model);
     archive.finish()?.into_inner().out.flush()
 }
+
+/// Bytes of the text to a vertex or a triangle, about.
+const LINE: u64 = 50;
 
 /// A writer that fails once, and takes everything thereafter: an archive that is dropped after
 /// an error tries to complete itself, and complains to the terminal if it cannot.

@@ -2,6 +2,8 @@
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
+use crate::geom::Mesh;
+
 use crate::Run;
 
 /// A reader or a writer that ends when a run is cancelled, and tells it how many of the bytes have
@@ -19,11 +21,6 @@ impl<'a, T> Watched<'a, T> {
         Watched { inner, run, passed: 0, all }
     }
 
-    /// The run.
-    pub(super) fn run(&self) -> &'a Run {
-        self.run
-    }
-
     /// Lets some bytes pass.
     fn pass(&mut self, bytes: impl FnOnce(&mut T) -> io::Result<usize>) -> io::Result<usize> {
         self.run.check().map_err(io::Error::other)?;
@@ -34,6 +31,33 @@ impl<'a, T> Watched<'a, T> {
         }
         Ok(count)
     }
+}
+
+/// Bytes of a file to a vertex, a point or a triangle, about.
+const BYTES: u64 = 30;
+
+/// Writes on a run so many points and triangles, of which the run is told when their bytes pass.
+pub(super) fn watched<W: Write>(
+    count: usize,
+    run: &Run,
+    out: W,
+    write: impl FnOnce(&Run, &mut Watched<'_, W>) -> io::Result<()>,
+) -> io::Result<()> {
+    staged(run, |run| write(run, &mut Watched::new(out, BYTES * count as u64, run)))
+}
+
+/// Writes on a run: what is told on the way is not yet all.
+pub(super) fn staged(run: &Run, write: impl FnOnce(&Run) -> io::Result<()>) -> io::Result<()> {
+    let run = run.stage(0.0, 1.0);
+    run.check().map_err(io::Error::other)?;
+    write(&run.stage(0.0, 0.95))?;
+    run.report(1.0);
+    Ok(())
+}
+
+/// Points and triangles of a mesh.
+pub(super) fn size(mesh: &Mesh) -> usize {
+    mesh.positions().len() + mesh.triangles().len()
 }
 
 impl<T: Read> Read for Watched<'_, T> {

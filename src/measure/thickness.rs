@@ -60,8 +60,8 @@ impl Solid {
     /// let report = pot.thickness(&MeshSettings::default(), &Run::default())?;
     /// assert!((report.least - 0.8).abs() < 0.02 && report.at.z > -8.0);
     /// // Most of the surface is the wall's.
-    /// assert!(report.share_below(1.0) > 0.6 && report.share_below(0.5) == 0.0);
-    /// # Ok::<(), rvachev::error::MeshingError>(())
+    /// assert!(report.share_below(1.0)? > 0.6 && report.share_below(0.5)? == 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Details

@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use crate::error::RenderError;
 use crate::geom::{label, legend};
-use crate::{Camera, Image, Mesh, MeshSolid, RenderSettings, Run, Solid};
+use crate::{Camera, Image, Mesh, MeshSolid, ParamError, RenderSettings, Run, Solid, SolidError};
+use rvachev_field::check;
 use rvachev_num::figures;
 
 /// The most ranges of a histogram.
@@ -60,12 +61,17 @@ impl ThicknessReport {
         &self.thicknesses
     }
 
-    /// The share of the surface that is thinner than `limit`, from 0 to 1.
-    #[must_use]
-    pub fn share_below(&self, limit: f64) -> f64 {
+    /// The share of the surface that is thinner than `limit`, a length, from 0 to 1.
+    ///
+    /// # Errors
+    /// If the limit is NaN.
+    pub fn share_below(&self, limit: f64) -> Result<f64, ParamError> {
+        if limit.is_nan() {
+            return Err(ParamError::new("limit", limit, "any number"));
+        }
         let whole: f64 = self.areas.iter().sum();
         let below = self.thicknesses.iter().zip(&self.areas).filter(|(thickness, _)| **thickness < limit);
-        if whole > 0.0 { below.fold(0.0, |sum, (_, area)| sum + area) / whole } else { 0.0 }
+        Ok(if whole > 0.0 { below.fold(0.0, |sum, (_, area)| sum + area) / whole } else { 0.0 })
     }
 
     /// How much of the surface is how thick: so many ranges of one width, from 0 to the largest
@@ -89,17 +95,24 @@ impl ThicknessReport {
     }
 
     /// The mesh in colours: from red at thicknesses of `thin` and less, by yellow and green, to
-    /// blue at those of `thick` and more. In place of [`mesh`](Self::mesh) another one, of other
-    /// triangles, stays as it is.
-    #[must_use]
-    pub fn colored(&self, thin: f64, thick: f64) -> Mesh {
+    /// blue at those of `thick` and more, in length units. In place of [`mesh`](Self::mesh) another
+    /// one, of other triangles, stays as it is.
+    ///
+    /// # Errors
+    /// If one of them is not finite, or `thick` is not above `thin`.
+    pub fn colored(&self, thin: f64, thick: f64) -> Result<Mesh, ParamError> {
+        check::number("thin", thin)?;
+        check::number("thick", thick)?;
+        if thick <= thin {
+            return Err(ParamError::new("thick", thick, format_args!("above {thin}, which is thin")));
+        }
         let color = |thickness: &f64| {
             let part = ((thickness - thin) / (thick - thin)).clamp(0.0, 1.0);
-            let [r, g, b] = heat(if part.is_nan() { 1.0 } else { part });
+            let [r, g, b] = heat(part);
             [[r, g, b, 255]; 3]
         };
         let colors = self.thicknesses.iter().map(color).collect();
-        self.mesh.clone().with_corner_colors(colors).unwrap_or_else(|_| self.mesh.clone())
+        Ok(self.mesh.clone().with_corner_colors(colors).unwrap_or_else(|_| self.mesh.clone()))
     }
 
     /// A picture of the mesh in the colours of [`colored`](Self::colored) from the first to the
@@ -119,7 +132,7 @@ impl ThicknessReport {
     /// ```
     ///
     /// # Errors
-    /// What is wrong with the camera or the settings, that the mesh has no triangles, or that the
+    /// What is wrong with the thicknesses, the camera or the settings, that the mesh has no triangles, or that the
     /// work was cancelled.
     pub fn picture(
         &self,
@@ -130,7 +143,8 @@ impl ThicknessReport {
     ) -> Result<Image, RenderError> {
         let run = run.stage(0.0, 1.0);
         let [to_build, to_render] = run.stages([0.2, 0.8]);
-        let colored = Solid::from_mesh_with(&self.colored(thin, thick), MeshSolid::default(), &to_build)?;
+        let colored = self.colored(thin, thick).map_err(SolidError::Argument)?;
+        let colored = Solid::from_mesh_with(&colored, MeshSolid::default(), &to_build)?;
         let scene = colored.scene_with(&to_render.stage(0.0, 0.2))?;
         let image = scene.render_with(camera, settings, &to_render.stage(0.2, 1.0))?;
         let mut pixels = image.pixels().to_vec();

@@ -8,6 +8,7 @@ use crate::distance::{compiled, surface_of};
 use crate::eval::{Care, Hit, Owner, Program, Region, first_hit};
 use crate::geom::unit;
 use crate::{Bounds, Interval, Solid, SolidError};
+use rvachev_field::check;
 
 impl Solid {
     /// The program of true values.
@@ -120,7 +121,8 @@ impl Solid {
     /// miss it; so may one along which an unbounded deformed solid winds without end.
     ///
     /// # Errors
-    /// What is wrong with the solid: see [`SolidError`].
+    /// What is wrong with the solid: see [`SolidError`]; [`SolidError::Argument`] if a coordinate of
+    /// the ray is not finite, or its direction is zero.
     ///
     /// ```
     /// use rvachev::Solid;
@@ -134,10 +136,10 @@ impl Solid {
     /// ```
     pub fn raycast(&self, origin: impl Into<DVec3>, direction: impl Into<DVec3>) -> Result<Option<Hit>, SolidError> {
         let programs = compiled(self)?;
-        let (origin, direction) = (origin.into(), unit(direction.into()));
-        if !direction.is_finite() || !origin.is_finite() {
-            return Ok(None);
-        }
+        let (origin, direction) = (origin.into(), direction.into());
+        check::point("origin", origin).map_err(SolidError::Argument)?;
+        check::direction("direction", direction).map_err(SolidError::Argument)?;
+        let direction = unit(direction);
         let whole = [joint(&programs, origin), f64::INFINITY];
         Ok(first_hit(&programs.surface, &programs.bounds, (origin, direction), whole, Care::Full))
     }
@@ -150,7 +152,8 @@ impl Solid {
     /// found at once. Elsewhere the surface is measured at the first call, and kept.
     ///
     /// # Errors
-    /// What is wrong with the solid; [`SolidError::Unbounded`] if it has no finite box.
+    /// What is wrong with the solid; [`SolidError::Unbounded`] if it has no finite box,
+    /// [`SolidError::Argument`] if a coordinate of the point is not finite.
     ///
     /// ```
     /// use rvachev::Solid;
@@ -165,7 +168,8 @@ impl Solid {
         let p = p.into();
         let bounds = self.finite_bounds()?;
         let programs = compiled(self)?;
-        if bounds.is_empty() || !p.is_finite() {
+        check::point("p", p).map_err(SolidError::Argument)?;
+        if bounds.is_empty() {
             return Ok(None);
         }
         if let Some(foot) = programs.foot(p) {

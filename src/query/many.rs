@@ -10,6 +10,7 @@ use crate::distance::{compiled_with, surface_with};
 use crate::eval::{Compiled, Hit, Owner};
 use crate::geom::each;
 use crate::{Bounds, Cancelled, Interval, Run, Solid, SolidError};
+use rvachev_field::check;
 
 /// So many are asked by a thread before it tells how far it is.
 const CHUNK: usize = 16;
@@ -136,6 +137,12 @@ impl Solid {
     /// What is wrong with the solid, or that the work was cancelled.
     pub fn raycast_all_with(&self, rays: &[(DVec3, DVec3)], run: &Run) -> Result<Vec<Option<Hit>>, PrepareError> {
         self.compiled_and(run, |_, run| {
+            let is_ray = |(origin, way): &(DVec3, DVec3)| origin.is_finite() && way.is_finite() && *way != DVec3::ZERO;
+            for (number, (origin, direction)) in rays.iter().enumerate().filter(|(_, ray)| !is_ray(ray)) {
+                let (origin_of, direction_of) = (format!("ray {number}: origin"), format!("ray {number}: direction"));
+                check::point(&origin_of, *origin).map_err(SolidError::Argument)?;
+                check::direction(&direction_of, *direction).map_err(SolidError::Argument)?;
+            }
             let hits = asked(rays, run, |(origin, direction)| self.raycast(*origin, *direction))?;
             Ok(hits.into_iter().collect::<Result<_, _>>()?)
         })
@@ -169,7 +176,11 @@ impl Solid {
     /// that the work was cancelled.
     pub fn closest_surface_points_with(&self, points: &[DVec3], run: &Run) -> Result<Vec<Option<DVec3>>, PrepareError> {
         self.compiled_and(run, |programs, run| {
-            if self.finite_bounds()?.is_empty() {
+            let is_empty = self.finite_bounds()?.is_empty();
+            for (number, p) in points.iter().enumerate().filter(|(_, p)| !p.is_finite()) {
+                check::point(&format!("point {number}: p"), *p).map_err(SolidError::Argument)?;
+            }
+            if is_empty {
                 return Ok(vec![None; points.len()]);
             }
             // Where the value is the distance the point is told at once.
@@ -178,8 +189,8 @@ impl Solid {
                 1 => [0.3, 0.4, 0.3],
                 _ => [0.02, 0.58, 0.4],
             });
-            let mut near = asked(points, &to_tell, |p| programs.foot(*p).filter(|_| p.is_finite()))?;
-            let is_left = |(p, found): &(&DVec3, &mut Option<DVec3>)| found.is_none() && p.is_finite();
+            let mut near = asked(points, &to_tell, |p| programs.foot(*p))?;
+            let is_left = |(_, found): &(&DVec3, &mut Option<DVec3>)| found.is_none();
             let mut left: Vec<_> = points.iter().zip(&mut near).filter(is_left).collect();
             if !left.is_empty() {
                 let surface = surface_with(self, &to_measure)?;

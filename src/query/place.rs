@@ -196,6 +196,53 @@ impl Profile {
         Profile(self.0.placed("centered", |bounds| -bounds.center().truncate().extend(0.0)))
     }
 
+    /// Moved along y so that its box stands on the line y = 0: [`Solid::on_ground`].
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    ///
+    /// let disc = Profile::circle(2.0).on_ground();
+    /// assert!(disc.contains([0.0, 3.9])? && !disc.contains([0.0, -0.1])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn on_ground(&self) -> Profile {
+        Profile(self.0.placed("on_ground", |bounds| DVec3::new(0.0, -bounds.min.y, 0.0)))
+    }
+
+    /// Moved along x or y so that a side of its box lies on the line of a side of another profile's
+    /// box: [`Solid::aligned`]. A profile has no [`Bottom`](Face::Bottom) and no [`Top`](Face::Top):
+    /// they are refused when the result is first used.
+    ///
+    /// ```
+    /// use rvachev::{Face, Profile};
+    ///
+    /// let plate = Profile::rectangle([20.0, 4.0]);
+    /// let tab = Profile::rectangle([3.0, 2.0]).aligned(Face::Front, &plate, Face::Back);
+    /// assert!(tab.contains([0.0, 3.9])? && !tab.contains([0.0, 1.9])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn aligned(&self, face: Face, other: &Profile, other_face: Face) -> Profile {
+        Profile(self.0.aligned(face, &other.0, other_face))
+    }
+
+    /// Turned by `angle` about `point`, anticlockwise: [`Solid::rotate_around`]. About the origin:
+    /// [`rotate`](Profile::rotate).
+    ///
+    /// ```
+    /// use rvachev::{deg, Profile};
+    ///
+    /// let hand = Profile::rectangle([4.0, 1.0]).rotate_around([-2.0, 0.0], deg(90.0));
+    /// assert!(hand.contains([-2.0, 3.9])? && !hand.contains([1.0, 0.0])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn rotate_around(&self, point: impl Into<glam::DVec2>, angle: impl Into<Angle>) -> Profile {
+        let point = point.into();
+        self.translate(-point).rotate(angle).translate(point)
+    }
+
     /// A grid of copies about the profile's own place: [`Solid::repeat_centered`].
     ///
     /// ```

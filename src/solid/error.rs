@@ -20,6 +20,9 @@ pub enum SolidError {
         /// Which parameter, its value and what is allowed.
         source: ParamError,
     },
+    /// A number that a question to the solid came with.
+    #[error(transparent)]
+    Argument(ParamError),
     /// A join without operands.
     #[error("{path}: has 0 operands, allowed: 1 or more")]
     EmptyJoin {

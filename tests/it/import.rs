@@ -11,8 +11,8 @@ use crate::runs::{heeds, laden};
 use glam::{DVec3, Vec3};
 use rvachev::error::{LoadError, ReadError, SaveError};
 use rvachev::io::{
-    FileFormat, FilePlace, LoadSettings, write_3mf, write_glb, write_obj, write_ply, write_ply_points, write_stl,
-    write_stl_ascii,
+    FileFormat, FilePlace, LoadSettings, write_3mf, write_glb, write_glb_on, write_obj, write_obj_on, write_ply,
+    write_ply_on, write_ply_points, write_ply_points_on, write_stl, write_stl_ascii, write_stl_ascii_on, write_stl_on,
 };
 use rvachev::{CancelToken, CellSize, LengthUnit, Mesh, MeshSettings, PointCloud, Progress, Run, SaveSettings, Solid};
 
@@ -430,6 +430,29 @@ fn files_are_written_and_read_under_a_run() {
     assert_eq!(PointCloud::load(&path).unwrap().len(), cloud.len());
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 6, "no temporary file is left");
     fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn writers_heed_a_run() {
+    let (mesh, settings) = (laden(), SaveSettings::default());
+    let cloud = PointCloud::new(mesh.positions().iter().map(|p| p.as_dvec3()).collect()).unwrap();
+    let bytes = Vec::<u8>::new;
+    heeds("writing STL", 15, 0.3, |run| write_stl_on(&mesh, run, bytes()));
+    heeds("writing STL as text", 15, 0.3, |run| write_stl_ascii_on(&mesh, run, bytes()));
+    heeds("writing OBJ", 15, 0.6, |run| write_obj_on(&mesh, &settings, run, bytes()));
+    heeds("writing PLY", 15, 0.5, |run| write_ply_on(&mesh, run, bytes()));
+    heeds("writing GLB", 15, 0.5, |run| write_glb_on(&mesh, &settings, run, bytes()));
+    heeds("writing points", 15, 0.3, |run| write_ply_points_on(&cloud, run, bytes()));
+    heeds("writing 3MF", 15, 0.6, |run| rvachev::io::write_3mf_on(&mesh, &settings, run, bytes()));
+    // What is written is the same.
+    let (mut plain, mut on) = (bytes(), bytes());
+    write_obj(&mesh, &settings, &mut plain).unwrap();
+    write_obj_on(&mesh, &settings, &Run::default(), &mut on).unwrap();
+    assert!(plain == on);
+    let run = Run::default();
+    run.cancel.cancel();
+    let error = write_ply_on(&mesh, &run, bytes()).unwrap_err();
+    assert!(error.get_ref().is_some_and(|inner| inner.is::<rvachev::Cancelled>()), "{error:?}");
 }
 
 #[test]

@@ -333,12 +333,64 @@ fn questions_take_any_points_rays_and_boxes() {
         let range = solid.range(&region).unwrap();
         assert!(!range.lo().is_nan() && !range.hi().is_nan());
         let _ = (solid.region(&region).unwrap(), solid.owner(p).unwrap(), solid.contains(p).unwrap());
-        if let Some(hit) = solid.raycast(p, q).unwrap() {
-            assert!(hit.distance.is_finite() && hit.normal.is_finite(), "{hit:?} from {p} along {q}");
+        let is_ray = p.is_finite() && q.is_finite() && q != DVec3::ZERO;
+        match solid.raycast(p, q) {
+            Ok(hit) => {
+                let is_whole = hit.is_none_or(|hit| hit.distance.is_finite() && hit.normal.is_finite());
+                assert!(is_ray && is_whole, "{hit:?} from {p} along {q}");
+            }
+            Err(error) => assert!(!is_ray, "{} from {p} along {q}", error.said()),
         }
         match solid.closest_surface_point(p) {
             Ok(found) => assert!(found.is_none_or(|found| found.is_finite()), "{found:?} from {p}"),
             Err(error) => drop(error.said()),
         }
     });
+}
+
+#[test]
+fn questions_with_numbers_that_are_not_finite_are_errors() {
+    let ball = Solid::sphere(1.0);
+    let text = |error: rvachev::SolidError| error.to_string();
+    let (nan, far) = (DVec3::new(0.0, f64::NAN, 0.0), DVec3::new(0.0, 0.0, f64::INFINITY));
+    assert_eq!(text(ball.raycast(nan, DVec3::X).unwrap_err()), "origin.y is NaN, allowed: finite");
+    assert_eq!(
+        text(ball.raycast(DVec3::ZERO, far).unwrap_err()),
+        "direction is inf, allowed: a finite vector other than zero"
+    );
+    let none = text(ball.raycast(DVec3::ZERO, DVec3::ZERO).unwrap_err());
+    assert_eq!(none, "direction is 0, allowed: a finite vector other than zero");
+    let rays = [(DVec3::ZERO, DVec3::X), (DVec3::ZERO, nan)];
+    assert_eq!(
+        text(ball.raycast_all(&rays).unwrap_err()),
+        "ray 1: direction is NaN, allowed: a finite vector other than zero"
+    );
+    assert_eq!(text(ball.closest_surface_point(far).unwrap_err()), "p.z is inf, allowed: finite");
+    let points = text(ball.closest_surface_points(&[DVec3::X, nan]).unwrap_err());
+    assert_eq!(points, "point 1: p.y is NaN, allowed: finite");
+    assert!(ball.raycast(DVec3::ZERO, DVec3::splat(1e-310)).unwrap().is_some());
+}
+
+/// Normals of any length but 0.
+#[test]
+fn normals_are_directions_whatever_their_length() {
+    let way = DVec3::new(1.0, -2.0, 2.0);
+    for length in [1e-320, 1e-200, 1e-30, 1.0, 1e30, 1e200, 5e307] {
+        let half = Solid::half_space(way * length, 3.0);
+        let slab = Solid::slab(way * length, 2.0);
+        // Numbers that are so small have few digits.
+        let precise = if length < 1e-300 { 1e-2 } else { 1e-12 };
+        for p in [DVec3::ZERO, way, 2.0 * way] {
+            let along = way.dot(p) / 3.0;
+            assert!((half.value(p).unwrap() - (3.0 - along)).abs() < precise, "{length}");
+            assert!((slab.value(p).unwrap() - (1.0 - along.abs())).abs() < precise, "{length}");
+        }
+    }
+    let text = |solid: Solid| solid.bounds().unwrap_err().to_string();
+    let none = text(Solid::half_space(DVec3::ZERO, 1.0));
+    assert_eq!(none, "half-space: normal is 0, allowed: a finite vector other than zero");
+    assert_eq!(
+        text(Solid::slab([0.0, f64::INFINITY, 0.0], 1.0)),
+        "slab: normal is inf, allowed: a finite vector other than zero"
+    );
 }

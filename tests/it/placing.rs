@@ -39,6 +39,35 @@ fn boxes_are_where_they_are_asked_for() {
 }
 
 #[test]
+fn profiles_are_placed_as_solids_are() {
+    let part = Profile::rectangle([4.0, 6.0]).translate([10.0, 20.0]);
+    let sides = |profile: &Profile| {
+        let bounds = profile.bounds().unwrap();
+        [bounds.min, bounds.max]
+    };
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    let [low, high] = sides(&part.on_ground());
+    assert!(near(low.y, 0.0) && near(high.y, 6.0) && near(low.x, 8.0));
+    let other = Profile::circle(5.0);
+    let faces = [Face::Left, Face::Right, Face::Front, Face::Back];
+    for (n, face) in faces.into_iter().enumerate() {
+        for (m, there) in faces.into_iter().enumerate().filter(|(m, _)| m / 2 == n / 2) {
+            let placed = part.aligned(face, &other, there);
+            let (own, wanted) = (sides(&placed)[n % 2][n / 2], sides(&other)[m % 2][m / 2]);
+            assert!(near(own, wanted), "{face:?} at {there:?}: {own}, {wanted}");
+            assert!(near(sides(&placed)[0][1 - n / 2], sides(&part)[0][1 - n / 2]), "{face:?} at {there:?}");
+        }
+    }
+    let turned = Profile::circle(0.5).translate([2.0, 2.0]).rotate_around([1.0, 2.0], deg(90.0));
+    assert!(near(turned.value([1.0, 3.0]).unwrap(), 0.5));
+    let message = |profile: Profile| profile.bounds().unwrap_err().to_string();
+    let mixed = message(other.aligned(Face::Left, &other, Face::Front));
+    assert!(mixed.contains("aligned: translation.x") && mixed.contains("by faces across the same axis"), "{mixed}");
+    let upright = message(other.aligned(Face::Top, &other, Face::Bottom));
+    assert!(upright.contains("aligned: translation.z"), "{upright}");
+}
+
+#[test]
 fn turned_about_a_line() {
     let point = DVec3::new(1.0, 2.0, 3.0);
     let ball = Solid::sphere(0.5).translate(point + DVec3::X).rotate_around(point, DVec3::Z * 7.0, deg(90.0));

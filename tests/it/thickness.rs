@@ -10,7 +10,7 @@ fn thickness(solid: &Solid, cells: u32) -> ThicknessReport {
 
 /// Of the surface's area this much is within a hundredth of a thickness.
 fn share_near(report: &ThicknessReport, thickness: f64) -> f64 {
-    report.share_below(1.01 * thickness) - report.share_below(0.99 * thickness)
+    report.share_below(1.01 * thickness).unwrap() - report.share_below(0.99 * thickness).unwrap()
 }
 
 #[test]
@@ -72,18 +72,24 @@ fn reports_are_shown_as_text_and_as_colours() {
     let report = thickness(&Solid::cuboid([4.0, 4.0, 1.0]), 24);
     assert!((report.least - 1.0).abs() < 5e-3, "{report}");
     assert!(report.to_string().starts_with("least thickness "), "{report}");
-    let mesh = report.colored(0.5, 2.0);
+    let mesh = report.colored(0.5, 2.0).unwrap();
     let colors = mesh.corner_colors().unwrap();
     assert_eq!(colors.len(), report.thicknesses().len());
     let flat = (0..colors.len()).filter(|t| (report.thicknesses()[*t] - 1.0).abs() < 0.01);
     assert!(flat.clone().count() > 100 && flat.into_iter().all(|t| colors[t][0][0] > 100 && colors[t][0][2] == 0));
     // Whatever is asked for.
+    assert_eq!(report.share_below(f64::NAN).unwrap_err().to_string(), "limit is NaN, allowed: any number");
+    assert_eq!((report.share_below(f64::INFINITY), report.share_below(-1.0)), (Ok(1.0), Ok(0.0)));
+    let wrong = |thin: f64, thick: f64| report.colored(thin, thick).unwrap_err().to_string();
+    assert_eq!(wrong(f64::NAN, 1.0), "thin is NaN, allowed: finite");
+    assert_eq!(wrong(1.0, f64::INFINITY), "thick is inf, allowed: finite");
+    assert_eq!(wrong(1.0, 1.0), "thick is 1, allowed: above 1, which is thin");
     assert_eq!(report.histogram(usize::MAX).len(), 1_000_000);
     let mut other = report.clone();
     other.mesh = Mesh::default();
-    assert!(other.colored(0.5, 2.0).triangles().is_empty());
+    assert!(other.colored(0.5, 2.0).unwrap().triangles().is_empty());
     let nothing = thickness(&(Solid::sphere(1.0) & Solid::sphere(1.0).translate([5.0, 0.0, 0.0])), 8);
-    assert_eq!((nothing.least, nothing.share_below(1.0)), (f64::INFINITY, 0.0));
+    assert_eq!((nothing.least, nothing.share_below(1.0).unwrap()), (f64::INFINITY, 0.0));
     assert_eq!(nothing.to_string(), "no part of the surface faces another");
 }
 

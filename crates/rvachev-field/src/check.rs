@@ -72,12 +72,24 @@ pub fn angle(parameter: &str, value: Angle, lo: f64, hi: f64) -> Result<(), Para
     }
 }
 
-/// A direction: a finite vector other than zero.
+/// A direction: a vector of finite coordinates other than zero, of any length.
 pub fn direction(parameter: &str, value: glam::DVec3) -> Result<(), ParamError> {
-    let length = value.length();
-    if length.is_finite() && length > 0.0 {
+    if value.is_finite() && value != glam::DVec3::ZERO {
         Ok(())
     } else {
-        Err(ParamError::new(parameter, length, "a finite vector other than zero"))
+        Err(ParamError::new(parameter, value.length(), "a finite vector other than zero"))
     }
+}
+
+/// A point or vector: all of its coordinates are finite.
+pub fn point(parameter: &str, value: glam::DVec3) -> Result<(), ParamError> {
+    for (axis, v) in ["x", "y", "z"].into_iter().zip(value.to_array()) {
+        number(&format!("{parameter}.{axis}"), v)?;
+    }
+    Ok(())
+}
+
+/// A number that is neither NaN nor infinite.
+pub fn number(parameter: &str, value: f64) -> Result<(), ParamError> {
+    if value.is_finite() { Ok(()) } else { Err(ParamError::new(parameter, value, "finite")) }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::outlined::Outlined;
-use super::{Field, ParamError, check};
+use super::{Field, ParamError, check, unit};
 use crate::{Bounds, Interval, Real};
 
 /// Everything on one side of a plane: `f = offset − n·p`, the true distance (1-Lipschitz).
@@ -36,7 +36,7 @@ pub struct HalfSpace {
 impl HalfSpace {
     #[inline(always)]
     fn unit(&self) -> DVec3 {
-        self.normal.normalize_or_zero()
+        unit(self.normal)
     }
 }
 

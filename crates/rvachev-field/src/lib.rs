@@ -67,6 +67,7 @@ use rvachev_num::{
 pub use blend::Blend;
 pub use blend::RicciSide;
 mod torus;
+mod unit;
 mod wedge;
 pub use capsule::Capsule;
 pub use check::ParamError;
@@ -114,6 +115,7 @@ pub use supershape::Supershape;
 pub use supertoroid::Supertoroid;
 pub use sweep::{Caps, HelixWarp, Opening, Revolution, Span, Turn};
 pub use torus::Torus;
+pub use unit::unit;
 pub use wedge::Wedge;
 pub use zone::{Pieces, Way, Zone, bits, dot, largest_stretch, mean_value_range, steepest};
 

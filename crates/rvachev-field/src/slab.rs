@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Field, ParamError, check};
+use super::{Field, ParamError, check, unit};
 use crate::{Bounds, Real};
 
 /// Everything between two parallel planes about the origin: `f = thickness/2 − |n·p|`, the
@@ -36,7 +36,7 @@ pub struct Slab {
 impl Slab {
     #[inline(always)]
     fn unit(&self) -> DVec3 {
-        self.normal.normalize_or_zero()
+        unit(self.normal)
     }
 }
 

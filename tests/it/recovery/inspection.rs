@@ -40,8 +40,17 @@ fn a_moved_hole_and_a_high_boss_are_found() {
     assert!(!plate.is_off() && plate.sizes.rms < 0.01, "{} {:?}", plate.significance, plate.sizes);
     let points: usize = report.leaves().iter().map(|leaf| leaf.sizes.points).sum();
     assert_eq!(points, report.signed().len());
-    assert_eq!(report.histogram(0.1, 8).iter().sum::<usize>(), points);
-    assert!(report.share_within(0.02) > 0.8 && report.share_within(1.0) == 1.0);
+    assert_eq!(report.histogram(0.1, 8).unwrap().iter().sum::<usize>(), points);
+    assert!(report.share_within(0.02).unwrap() > 0.8 && report.share_within(1.0).unwrap() == 1.0);
+    let text = report.share_within(f64::NAN).unwrap_err().to_string();
+    assert!(text.starts_with("tolerance is NaN"), "{text}");
+    for reach in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let texts = [report.histogram(reach, 8).unwrap_err().to_string(), {
+            let cloud = PointCloud::new(vec![DVec3::ZERO; points]).unwrap();
+            report.colored(&cloud, reach).unwrap_err().to_string()
+        }];
+        assert!(texts.iter().all(|text| text.starts_with(&format!("reach is {reach}"))), "{texts:?}");
+    }
 }
 
 #[test]

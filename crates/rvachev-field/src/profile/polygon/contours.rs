@@ -5,6 +5,7 @@ use rvachev_num::{Cancelled, Run};
 
 use super::super::super::check;
 use super::Edge;
+use super::snap::{Way, joined, led, rounding};
 use super::sweep::{Piece, Swept, from_left, sweep};
 use crate::ParamError;
 
@@ -20,20 +21,22 @@ pub(super) fn edges(contours: &[Vec<DVec2>], run: &Run) -> Result<Result<Vec<Edg
     if contours.is_empty() {
         return Ok(Err(ParamError::new("number of contours", 0.0, "1 or more")));
     }
+    let rounding = rounding(contours);
     for (c, points) in contours.iter().enumerate() {
         run.check()?;
-        if let Err(error) = check_points(c, points) {
+        if let Err(error) = check_points(c, points, rounding) {
             return Ok(Err(error));
         }
     }
-    let given = Given::new(contours, run)?;
-    Ok(match sweep(&given.corners, given.pieces(), run)? {
+    let given = Given::new(contours, rounding, run)?;
+    let ways = led(&given.corners, given.ways(), rounding, run)?;
+    Ok(match sweep(&given.corners, pieces(&ways), run)? {
         Swept::Pieces(pieces) => given.parted(pieces),
         Swept::Cross(edges) => Err(given.crossing(edges)),
     })
 }
 
-fn check_points(c: usize, points: &[DVec2]) -> Result<(), ParamError> {
+fn check_points(c: usize, points: &[DVec2], rounding: f64) -> Result<(), ParamError> {
     if points.len() < 3 {
         return Err(ParamError::new(format_args!("number of points of contour {c}"), points.len() as f64, "3 or more"));
     }
@@ -44,7 +47,7 @@ fn check_points(c: usize, points: &[DVec2]) -> Result<(), ParamError> {
     }
     for (i, (a, b)) in points.iter().zip(points.iter().cycle().skip(1)).enumerate() {
         let length = (*b - *a).length();
-        if length < SHORTEST {
+        if length > rounding && length < SHORTEST {
             return Err(ParamError::new(
                 format_args!("length of edge {i} of contour {c}, at ({}, {}),", a.x, a.y),
                 length,
@@ -53,6 +56,12 @@ fn check_points(c: usize, points: &[DVec2]) -> Result<(), ParamError> {
         }
     }
     Ok(())
+}
+
+/// The ways by their ends from left to right; what has no length is nothing.
+fn pieces(ways: &[Way]) -> Vec<Piece> {
+    let piece = |([from, to], edge): &Way| Piece { left: *from.min(to), right: *from.max(to), edge: *edge };
+    ways.iter().filter(|([from, to], _)| from != to).map(piece).collect()
 }
 
 /// The contours by their corners, each point once.
@@ -65,20 +74,17 @@ struct Given<'a> {
 }
 
 impl<'a> Given<'a> {
-    fn new(contours: &'a [Vec<DVec2>], run: &Run) -> Result<Given<'a>, Cancelled> {
+    fn new(contours: &'a [Vec<DVec2>], rounding: f64, run: &Run) -> Result<Given<'a>, Cancelled> {
         let near_zero = |v: f64| if v.abs() < NOTHING { 0.0 } else { v };
         let points = contours.iter().flatten().map(|p| DVec2::new(near_zero(p.x), near_zero(p.y)));
         let mut order: Vec<(DVec2, u32)> = points.zip(0..).collect();
         run.check()?;
         order.sort_unstable_by(|a, b| from_left(&a.0, &b.0).then(a.1.cmp(&b.1)));
         run.check()?;
-        let mut corners: Vec<DVec2> = Vec::with_capacity(order.len());
+        let (corners, stands) = joined(order.iter().map(|(point, _)| *point), rounding);
         let mut corner_of = vec![0; order.len()];
-        for (point, at) in order {
-            if corners.last() != Some(&point) {
-                corners.push(point);
-            }
-            corner_of[at as usize] = corners.len() as u32 - 1;
+        for ((_, at), corner) in order.into_iter().zip(stands) {
+            corner_of[at as usize] = corner;
         }
         let mut ends = Vec::with_capacity(corner_of.len());
         let mut rest = &corner_of[..];
@@ -91,9 +97,8 @@ impl<'a> Given<'a> {
         Ok(Given { contours, corners, ends })
     }
 
-    fn pieces(&self) -> Vec<Piece> {
-        let piece = |([from, to], edge): (&[u32; 2], u32)| Piece { left: *from.min(to), right: *from.max(to), edge };
-        self.ends.iter().zip(0..).map(piece).collect()
+    fn ways(&self) -> Vec<Way> {
+        self.ends.iter().copied().zip(0..).filter(|([from, to], _)| from != to).collect()
     }
 
     /// The contour of an edge, and its number there.

@@ -45,9 +45,13 @@ impl Edge {
         (p - self.nearest(p)).length()
     }
 
-    /// Whether the ray from `p` along x crosses the edge.
-    pub(super) fn is_crossed_from(&self, p: DVec2) -> bool {
-        let left = self.along.perp().dot(p - self.start) >= 0.0;
-        (self.start.y > p.y) != (self.end.y > p.y) && left == (self.end.y > self.start.y)
+    /// The point half way.
+    pub(super) fn middle(&self) -> DVec2 {
+        0.5 * (self.start + self.end)
+    }
+
+    /// Its ends, the lower one first.
+    pub(super) fn rising(&self) -> [DVec2; 2] {
+        if self.start.y < self.end.y { [self.start, self.end] } else { [self.end, self.start] }
     }
 }

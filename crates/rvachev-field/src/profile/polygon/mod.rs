@@ -4,15 +4,17 @@
 //!     f = ± distance to the nearest edge, + inside
 //! ```
 //!
-//! The nearest edge is found through a hierarchy of boxes, and so are the edges that a ray crosses,
-//! whose number gives the sign. In a small region few edges can be nearest: there the polygon is
+//! The nearest edge is found through a hierarchy of boxes; the number of edges to the left at a
+//! point's height gives the sign. In a small region few edges can be nearest: there the polygon is
 //! narrowed to a leaf of these alone, which runs on lanes.
 
 mod contours;
 mod edge;
 mod fill;
+mod levels;
 mod near;
 mod patch;
+mod snap;
 mod sweep;
 mod tree;
 
@@ -25,6 +27,7 @@ use super::super::{AnyField, Chunk, ParamError, VALUE_LIMIT, Way, Zone};
 use crate::kernel::Element;
 use crate::{Bounds, Dual, Interval, Real};
 use edge::Edge;
+use levels::Levels;
 use near::{NearEdges, Reference};
 use patch::Patch;
 use rvachev_num::symbol::Symbol;
@@ -48,7 +51,9 @@ use tree::Tree;
 ///
 /// Contours may touch themselves and one another, at corners or along edges: what two of them have
 /// in common is no border, as between two squares side by side, or on the two ways of a bridge that
-/// leads to a hole. Edges do not cross; coordinates are within ±10⁹ and edges at least 10⁻⁹ long.
+/// leads to a hole. Corners are one that are nearer to each other than 2·10⁻¹² of the size of the
+/// whole (and rounding, far from the origin), and an edge that passes a corner so near leads through
+/// it: so much may be rounded where a drawing is turned or written. Edges do not cross; coordinates are within ±10⁹ and edges at least 10⁻⁹ long.
 /// What is wrong is found by exact arithmetic and said when the profile is compiled: with the
 /// contour, the edge and the point. Until then nothing is computed; n edges take some n log n
 /// steps, and one more for each pair that lies on one another.
@@ -81,6 +86,7 @@ struct Border {
     /// In the order of the tree.
     edges: Vec<Edge>,
     tree: Tree,
+    levels: Levels,
     min: DVec2,
     max: DVec2,
     /// All edges as a list, which lanes run, if they are few.
@@ -209,13 +215,14 @@ impl Border {
             Err(error) => (Vec::new(), Some(error)),
         };
         run.check()?;
-        let tree = Tree::build(&mut edges, |edge| [edge.start, edge.end]);
+        let tree = Tree::build(&mut edges, |edge| edge);
+        let levels = Levels::new(&edges, run)?;
         let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for edge in &edges {
             min = min.min(edge.start);
             max = max.max(edge.start);
         }
-        let mut border = Border { edges, tree, min, max, list: None, error };
+        let mut border = Border { edges, tree, levels, min, max, list: None, error };
         if (1..=FEW_EDGES).contains(&border.edges.len()) {
             border.list = Some(NearEdges::new(&border.edges, Reference::Infinity, border.reach()));
         }
@@ -230,12 +237,7 @@ impl Border {
     /// The nearest edge and the signed distance to it.
     fn nearest(&self, p: DVec2, guess: usize) -> (usize, f64) {
         let (edge, distance) = self.tree.nearest(&self.edges, p, guess).unwrap_or((0, VALUE_LIMIT));
-        let mut inside = false;
-        self.tree.meeting(p, DVec2::new(f64::INFINITY, p.y), |i| {
-            inside ^= self.edges[i].is_crossed_from(p);
-            true
-        });
-        (edge, if inside { distance } else { -distance })
+        (edge, if self.levels.is_inside(&self.edges, p) { distance } else { -distance })
     }
 
     fn value(&self, p: DVec2) -> f64 {

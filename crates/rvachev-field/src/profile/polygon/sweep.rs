@@ -54,13 +54,13 @@ struct Active {
 }
 
 /// The sign of the turn at `b`: positive to the left. Exact.
-fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+pub(super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |p: DVec2| robust::Coord { x: p.x, y: p.y };
     robust::orient2d(coord(a), coord(b), coord(c))
 }
 
 /// The order that a turn stands for: what is to the left is greater.
-fn order(turn: f64) -> Ordering {
+pub(super) fn order(turn: f64) -> Ordering {
     turn.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
 }
 

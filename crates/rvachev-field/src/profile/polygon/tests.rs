@@ -352,3 +352,137 @@ fn points_that_repeat_the_one_before_are_left_out() {
     assert_eq!(polygon.check(), Ok(()));
     assert_eq!((polygon.edge_count(), polygon.area()), (3, 2.0));
 }
+
+/// A comb of teeth of a hundred times their width, turned.
+fn comb(teeth: usize, turn: f64) -> Vec<DVec2> {
+    let count = teeth as f64;
+    let tooth = |k: usize| {
+        let (x, y) = (k as f64, 100.0 + (k as f64).sin());
+        [[x, 0.0], [x + 0.3, y], [x + 0.7, y], [x + 0.9, 0.0]]
+    };
+    let teeth = (0..teeth).flat_map(tooth).chain([[count, -10.0], [0.0, -10.0]]);
+    teeth.map(|p| DVec2::from_angle(turn).rotate(DVec2::from_array(p))).collect()
+}
+
+/// Rays about a point, and blades that all begin at one.
+fn rays(count: usize) -> Vec<DVec2> {
+    let radius = |i: usize| if i.is_multiple_of(2) { 1.0 } else { 100.0 };
+    (0..2 * count).map(|i| radius(i) * DVec2::from_angle(3.1 * i as f64 / count as f64)).collect()
+}
+
+fn blades(count: usize) -> Vec<Vec<DVec2>> {
+    let side = |k: f64| 100.0 * DVec2::from_angle(1.5 * k / count as f64);
+    (0..count).map(|i| vec![DVec2::ZERO, side(i as f64), side(i as f64 + 0.5)]).collect()
+}
+
+fn bristly(count: usize) -> [Vec<Vec<DVec2>>; 5] {
+    [vec![comb(count, 0.0)], vec![comb(count, 1.6)], vec![comb(count, 0.7)], vec![rays(count)], blades(count)]
+}
+
+#[test]
+fn values_of_combs_and_fans_are_distances() {
+    let mut numbers = Numbers(8);
+    for (number, contours) in bristly(120).into_iter().enumerate() {
+        let polygon = Polygon::of_points(&contours);
+        assert_eq!(polygon.check(), Ok(()));
+        let corners = contours.iter().flatten().flat_map(|p| [*p, *p + DVec2::X, *p - 3.0 * DVec2::Y]);
+        for p in (0..400).map(|_| numbers.point(130.0)).chain(corners).collect::<Vec<_>>() {
+            let (want, got) = (direct(&contours, p), value(&polygon, p));
+            assert!((got - want).abs() < 1e-12, "{number} at {p}: {got}, want {want}");
+        }
+    }
+}
+
+#[test]
+fn values_of_combs_and_fans_take_few_steps() {
+    let seconds = |contours: &[Vec<DVec2>]| {
+        let polygon = Polygon::of_points(contours);
+        assert_eq!(polygon.check(), Ok(()));
+        let corners: Vec<DVec2> = contours.iter().flatten().copied().collect();
+        let mut numbers = Numbers(9);
+        // About the polygon, and beside what its middle is.
+        let at = |numbers: &mut Numbers| corners[(numbers.unit() * corners.len() as f64) as usize];
+        let points: Vec<DVec2> =
+            (0..400).map(|_| at(&mut numbers).lerp(at(&mut numbers), 1.2 * numbers.unit() - 0.1)).collect();
+        let round = || {
+            let start = std::time::Instant::now();
+            assert!(points.iter().map(|p| value(&polygon, *p)).sum::<f64>().is_finite());
+            start.elapsed().as_secs_f64()
+        };
+        (0..5).map(|_| round()).fold(f64::INFINITY, f64::min)
+    };
+    for (number, (few, many)) in bristly(200).into_iter().zip(bristly(20_000)).enumerate() {
+        let [few, many] = [few, many].map(|contours| seconds(&contours));
+        // A hundred times the edges.
+        assert!(many < 12.0 * few, "{number}: {} times", many / few);
+    }
+}
+
+/// Squares side by side, one half as high as the other, a hole in each that touches a side, all of it
+/// turned, far away or not, and with corners that are off by a part of the size.
+fn drawn(numbers: &mut Numbers, turn: f64, at: DVec2, off: f64) -> Vec<Vec<DVec2>> {
+    let drawing: [&[[f64; 2]]; 4] = [
+        &[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [4.0, 4.0], [0.0, 4.0], [0.0, 3.0], [0.0, 0.0]],
+        &[[4.0, 1.0], [6.0, 1.0], [6.0, 3.0], [4.0, 3.0]],
+        &[[0.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]],
+        &[[5.0, 3.0], [5.5, 2.0], [4.5, 2.0]],
+    ];
+    let mut point = |p: &[f64; 2]| {
+        let p = DVec2::from_angle(turn).rotate(DVec2::from_array(*p)) + at;
+        p + 6.0 * off * numbers.point(1.0)
+    };
+    drawing.iter().map(|contour| contour.iter().map(&mut point).collect()).collect()
+}
+
+#[test]
+fn what_rounding_parts_is_joined() {
+    let mut numbers = Numbers(10);
+    for (turn, at, off) in [
+        (0.0, DVec2::ZERO, 0.0),
+        (0.0, DVec2::ZERO, 1e-16),
+        (0.3, DVec2::ZERO, 0.0),
+        (0.3, DVec2::ZERO, 1e-15),
+        (0.7, DVec2::ZERO, 1e-14),
+        (1.1, DVec2::new(300.0, -20.0), 1e-13),
+        (1.1, DVec2::new(3e6, -2e5), 0.0),
+        (2.2, DVec2::ZERO, 4e-13),
+    ] {
+        for round in 0..40 {
+            let contours = drawn(&mut numbers, turn + 0.1 * f64::from(round), at, off);
+            let turn = turn + 0.1 * f64::from(round);
+            let polygon = Polygon::of_points(&contours);
+            let found = (polygon.check(), polygon.edge_count());
+            // Without the side in common, and that of the hole; with the parts of sides beside them.
+            assert_eq!(found, (Ok(()), 17), "{turn} {at} {off}");
+            let slack = 1e-11 + 1e-14 * at.length();
+            assert!((polygon.area() - 18.5).abs() < 10.0 * slack, "{turn} {at} {off}: {}", polygon.area());
+            for (p, want) in [([4.0, 2.0], 0.5), ([0.5, 1.5], -0.5), ([2.5, 2.0], 1.5), ([5.0, 2.5], -0.2236)] {
+                let got = value(&polygon, DVec2::from_angle(turn).rotate(DVec2::from_array(p)) + at);
+                assert!((got - want).abs() < slack.max(1e-4), "{turn} {at} {off}: {got} at {p:?}, want {want}");
+            }
+        }
+    }
+    // What is farther apart is apart.
+    let gap = |by: f64| {
+        Polygon::new([[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], {
+            [[1.0 + by, 0.2], [2.0, 0.2], [2.0, 0.8], [1.0 + by, 0.8]]
+        }])
+    };
+    let counts = [1e-14, -1e-14, 1e-12, -1e-12, 1e-10].map(|by| gap(by).edge_count());
+    assert_eq!(counts, [8, 8, 8, 8, 8]);
+    assert!(value(&gap(1e-12), DVec2::new(1.0, 0.5)) > 0.2 && value(&gap(1e-10), DVec2::new(1.0, 0.5)) < 1e-9);
+    assert!(gap(-1e-10).check().is_err());
+}
+
+#[test]
+fn what_is_nothing_but_for_rounding_is_nothing() {
+    let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+    let twice = Polygon::new([square, square.map(|[x, y]| [x + 1e-14, y - 1e-14])]);
+    assert!(twice.check().unwrap_err().to_string().starts_with("area is 0"));
+    // A contour that is a point, and one that is a line.
+    let point = [[1.0, 1.0], [1.0 + 1e-15, 1.0], [1.0, 1.0 + 1e-15], [1.0, 1.0]];
+    let line = [[1.0, 1.0], [2.0, 1.0 + 1e-14], [3.0, 1.0], [2.0, 1.0 - 1e-14]];
+    let polygon = Polygon::new([square, point, line]);
+    assert_eq!((polygon.check(), polygon.edge_count(), polygon.area()), (Ok(()), 4, 16.0));
+    assert_eq!(value(&polygon, DVec2::new(2.0, 1.0)), 1.0);
+}

@@ -1,4 +1,11 @@
 //! A hierarchy of boxes over the edges of a polygon.
+//!
+//! ```text
+//!         / / / /       One box lies along its edges: about the teeth of a comb and the rays of a
+//!        / / / /        fan, whichever way they lead, there is little room in it. Another one lies
+//!       /_/ /_/         along the axes: it ends where rays begin. Edges are parted where their
+//!                       middles are spread most, which is from tooth to tooth.
+//! ```
 
 use glam::DVec2;
 
@@ -7,7 +14,13 @@ use super::Edge;
 /// Edges in a box that is not divided further.
 const FEW: usize = 4;
 
-/// Boxes over edges: each holds either edges or two other boxes.
+/// What a box is smaller than its edges, in proportion, and how much farther it is taken to be than
+/// it is found to be: as much as rounding. Of edges that meet in a corner that is nearest one is
+/// enough.
+const SMALLER: f64 = 2.0 * f64::EPSILON;
+const FARTHER: f64 = 1.0 + 8.0 * f64::EPSILON;
+
+/// Boxes over edges, two about the same: each pair holds either edges or two other boxes.
 #[derive(Debug, Default)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
@@ -17,6 +30,10 @@ pub(super) struct Tree {
 struct Node {
     min: DVec2,
     max: DVec2,
+    centre: DVec2,
+    /// A direction of the other box.
+    along: DVec2,
+    half: DVec2,
     /// The first edge, or the first of the two boxes.
     first: u32,
     /// The number of edges; 0 if there are boxes.
@@ -24,44 +41,75 @@ struct Node {
 }
 
 impl Node {
-    fn distance_squared(&self, p: DVec2) -> f64 {
-        (self.min - p).max(p - self.max).max(DVec2::ZERO).length_squared()
+    /// The box about edges, without what it holds.
+    fn about<T>(items: &[T], of: impl Fn(&T) -> &Edge) -> Node {
+        let edges = || items.iter().map(&of);
+        let origin = edges().next().map_or(DVec2::ZERO, |edge| edge.start);
+        // Directions have no sense: twice the angle tells them.
+        let twice = edges()
+            .fold(DVec2::ZERO, |sum, edge| sum + (edge.end - edge.start).length() * edge.along.rotate(edge.along));
+        let along = DVec2::from_angle(0.5 * twice.to_angle());
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for p in edges().flat_map(|edge| [edge.start, edge.end]) {
+            (min, max) = (min.min(p), max.max(p));
+            let p = seen(along, p - origin);
+            (low, high) = (low.min(p), high.max(p));
+        }
+        let centre = origin + along.rotate(0.5 * (low + high));
+        let half = 0.5 * (high - low);
+        let half = (half - SMALLER * (half.max_element() + (centre - origin).length())).max(DVec2::ZERO);
+        Node { min, max, centre, along, half, first: 0, count: 0 }
     }
+
+    fn distance_squared(&self, p: DVec2) -> f64 {
+        let by_axes = (self.min - p).max(p - self.max).max(DVec2::ZERO).length_squared();
+        let along = (seen(self.along, p - self.centre).abs() - self.half).max(DVec2::ZERO).length_squared();
+        by_axes.max(FARTHER * along)
+    }
+
+    /// The direction in which the middles of the edges are spread most.
+    fn spread<'e>(&self, edges: impl Iterator<Item = &'e Edge>) -> DVec2 {
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for edge in edges {
+            let middle = seen(self.along, edge.middle() - self.centre);
+            (low, high) = (low.min(middle), high.max(middle));
+        }
+        let spread = high - low;
+        if spread.x > spread.y { self.along } else { self.along.perp() }
+    }
+}
+
+/// A vector by its parts along a direction and across it.
+fn seen(along: DVec2, v: DVec2) -> DVec2 {
+    DVec2::new(along.dot(v), along.perp_dot(v))
 }
 
 /// Boxes that wait: the tree is balanced and so at most 32 deep, and each box leaves one.
 const WAITING: usize = 40;
 
 impl Tree {
-    /// The tree over `items`, which are put into its order; `ends` gives an item's two ends.
-    pub(super) fn build<T>(items: &mut [T], ends: impl Fn(&T) -> [DVec2; 2]) -> Tree {
+    /// The tree over edges, `of` items, which are put into its order.
+    pub(super) fn build<T>(edges: &mut [T], of: impl Fn(&T) -> &Edge) -> Tree {
         let mut nodes = Vec::new();
         let mut open = Vec::new();
-        if !items.is_empty() {
-            nodes.push(Node { min: DVec2::ZERO, max: DVec2::ZERO, first: 0, count: 0 });
-            open.push((0, 0..items.len()));
+        if !edges.is_empty() {
+            nodes.push(Node::about(edges, &of));
+            open.push((0, 0..edges.len()));
         }
         while let Some((at, range)) = open.pop() {
-            let part = &mut items[range.clone()];
-            let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-            for [a, b] in part.iter().map(&ends) {
-                min = min.min(a).min(b);
-                max = max.max(a).max(b);
-            }
+            let part = &mut edges[range.clone()];
             if part.len() <= FEW {
-                nodes[at] = Node { min, max, first: range.start as u32, count: part.len() as u32 };
+                (nodes[at].first, nodes[at].count) = (range.start as u32, part.len() as u32);
                 continue;
             }
-            let axis = usize::from(max.y - min.y > max.x - min.x);
-            let middle = part.len() / 2;
-            let key = |item: &T| {
-                let [a, b] = ends(item);
-                a[axis] + b[axis]
-            };
+            let (middle, way) = (part.len() / 2, nodes[at].spread(part.iter().map(&of)));
+            let key = |item: &T| way.dot(of(item).middle());
             part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
             let first = nodes.len();
-            nodes[at] = Node { min, max, first: first as u32, count: 0 };
-            nodes.extend([nodes[at]; 2]);
+            nodes[at].first = first as u32;
+            let (before, after) = part.split_at(middle);
+            nodes.extend([before, after].map(|part| Node::about(part, &of)));
             open.push((first, range.start..range.start + middle));
             open.push((first + 1, range.start + middle..range.end));
         }
@@ -77,7 +125,7 @@ impl Tree {
         while height > 0 {
             height -= 1;
             let (at, distance): (u32, f64) = stack[height];
-            if distance > best.1 * best.1 {
+            if distance >= best.1 * best.1 {
                 continue;
             }
             let node = self.nodes[at as usize];
@@ -102,21 +150,12 @@ impl Tree {
     /// Calls `visit` with the numbers of all edges whose boxes are within `radius` of `p`, and
     /// perhaps some more, until it returns false.
     pub(super) fn within(&self, p: DVec2, radius: f64, mut visit: impl FnMut(usize) -> bool) {
-        self.walk(|node| node.distance_squared(p) <= radius * radius, &mut visit);
-    }
-
-    /// The same for all edges whose boxes meet the box from `min` to `max`.
-    pub(super) fn meeting(&self, min: DVec2, max: DVec2, mut visit: impl FnMut(usize) -> bool) {
-        self.walk(|node| node.min.cmple(max).all() && min.cmple(node.max).all(), &mut visit);
-    }
-
-    fn walk(&self, near: impl Fn(&Node) -> bool, visit: &mut dyn FnMut(usize) -> bool) {
         let mut stack = [0u32; WAITING];
         let mut height = usize::from(!self.nodes.is_empty());
         while height > 0 {
             height -= 1;
             let node = self.nodes[stack[height] as usize];
-            if !near(&node) {
+            if node.distance_squared(p) > radius * radius {
                 continue;
             }
             if node.count == 0 {
