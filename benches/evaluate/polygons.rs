@@ -1,4 +1,5 @@
-//! A polygon of 5000 edges: building it, its values through the hierarchy, and narrowed.
+//! A polygon of 5000 edges: building it, its values through the hierarchy, and narrowed; and polygons
+//! of very many edges that are long beside what is between them.
 
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -71,6 +72,43 @@ pub fn print() {
     let speeds = race(COUNT, &mut contestants);
     for ((name, parts), speed) in parts.iter().zip(speeds) {
         println!("{name:32} {:8.2} ns a point, {} of {REGIONS} regions", 1e3 / speed, parts.len());
+    }
+    print_bristly();
+}
+
+/// A comb of so many teeth, a hundred times as long as wide, turned.
+fn comb(teeth: u32, turn: f64) -> Vec<DVec2> {
+    let tooth = |k: u32| {
+        let (x, y) = (f64::from(k), 100.0 + f64::from(k).sin());
+        [[x, 0.0], [x + 0.3, y], [x + 0.7, y], [x + 0.9, 0.0]]
+    };
+    let back = [[f64::from(teeth), -10.0], [0.0, -10.0]];
+    let all = (0..teeth).flat_map(tooth).chain(back);
+    all.map(|p| DVec2::from_angle(turn).rotate(DVec2::from(p))).collect()
+}
+
+/// Rays about a point.
+fn fan(rays: u32) -> Vec<DVec2> {
+    let radius = |i: u32| if i.is_multiple_of(2) { 1.0 } else { 100.0 };
+    (0..2 * rays).map(|i| radius(i) * DVec2::from_angle(3.1 * f64::from(i) / f64::from(rays))).collect()
+}
+
+/// Of each how long it takes to build, and a value somewhere in its box.
+fn print_bristly() {
+    const MANY: u32 = 40_000;
+    let all = [("comb", comb(MANY, 0.0)), ("comb, turned", comb(MANY, 0.6)), ("fan", fan(MANY))];
+    for (name, contour) in all {
+        let edges = contour.len();
+        let start = Instant::now();
+        let solid = Profile::polygon(contour).column();
+        let whole = solid.field_program().expect("the polygon is valid");
+        let build = start.elapsed().as_secs_f64();
+        let mut bounds = solid.bounds().expect("the polygon is valid");
+        (bounds.min.z, bounds.max.z) = (-1.0, 1.0);
+        let points = Points::random(COUNT, bounds.half_extents());
+        let region = Bounds::from_center(bounds.center(), bounds.half_extents());
+        let speed = race(COUNT, &mut [program("", &whole, &region, &points)])[0];
+        println!("{name:32} {:8.2} µs a point, {edges} edges, built in {:.0} ms", 1.0 / speed, 1e3 * build);
     }
 }
 
