@@ -6,6 +6,7 @@
 mod fillets;
 mod laws;
 mod nested;
+mod nothing;
 mod plane;
 mod reference;
 mod subject;
@@ -152,58 +153,6 @@ fn opening_rounds_a_body_of_two_boxes_as_one() -> Outcome {
     let [volume, round] = rounded_box(DVec3::new(20.0, 10.0, 10.0), 1.5);
     let tolerance = layer(1000.0, 1.5) + sag(round, 1.5, 20.0 / 80.0);
     measures(&report(&two_cubes().rounded(1.5), 80)?, volume, tolerance, 1);
-    Ok(())
-}
-
-/// Fails unless every verb takes a solid that holds nothing.
-fn is_empty(nothing: &Solid) -> Outcome {
-    assert_eq!(nothing.bounds()?, Bounds::EMPTY, "{nothing:?}");
-    let mesh = mesh_at(nothing, CellSize::LongestSide(24))?;
-    assert!(mesh.triangles().is_empty() && !mesh.warnings().is_empty(), "{nothing:?}");
-    for p in [DVec3::ZERO, DVec3::splat(4.9), DVec3::new(100.0, 0.0, -3.0)] {
-        assert!(!nothing.contains(p)? && value(nothing, p) <= 0.0, "{nothing:?} at {p}");
-        assert!(!nothing.gradient(p)?.is_nan(), "{nothing:?} at {p}");
-        assert_eq!(nothing.closest_surface_point(p)?, None, "{nothing:?}");
-        assert_eq!(nothing.raycast(p, DVec3::X)?, None, "{nothing:?}");
-    }
-    let region = nothing.region(&Bounds::from_center(DVec3::ZERO, DVec3::ONE))?;
-    assert!(matches!(region, Region::Outside), "{nothing:?}: {region:?}");
-    Ok(())
-}
-
-#[test]
-fn what_is_eroded_away_is_empty_for_every_verb() -> Outcome {
-    let cube = Solid::cuboid([10.0; 3]);
-    let nothing = cube.offset(-5.5);
-    let ball = Solid::sphere(1.0);
-    let cases = [
-        nothing.clone(),
-        nothing.offset(5.5),
-        cube.rounded(5.5),
-        two_cubes().offset(-5.5),
-        two_cubes().rounded(5.5),
-        Solid::superellipsoid([3.0, 2.0, 1.0], 0.3, 0.7).twist(rad(0.2)).offset(-1.5),
-        Solid::sphere(1.0).offset(-1.5),
-        nothing.offset(-1.0),
-        nothing.shell(1.0),
-        nothing.rounded(1.0),
-        nothing.filleted(1.0),
-        at(nothing.clone(), [1.0, 2.0, 3.0]),
-        nothing.scale_axes([1.0, 2.0, 0.5]),
-        nothing.twist(rad(0.1)),
-        nothing.taper(0.1, 0.1, 1.0),
-        nothing.repeat([3, 1, 1], [4.0; 3]),
-        &nothing & &ball,
-        &nothing - &ball,
-        &nothing | &nothing,
-        nothing.union_with(&nothing, fillet(1.0)),
-        nothing.intersection_with(&ball, fillet(1.0)),
-        nothing.difference_with(&ball, Blend::Chamfer { leg: 1.0 }),
-        Solid::union_all_with([&nothing, &nothing], fillet(1.0)),
-    ];
-    for nothing in cases {
-        is_empty(&nothing)?;
-    }
     Ok(())
 }
 

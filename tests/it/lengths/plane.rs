@@ -94,17 +94,6 @@ fn corners_of_profiles_are_rounded_and_filled() -> Outcome {
 }
 
 #[test]
-fn profiles_that_are_eroded_away_are_empty() -> Outcome {
-    for nothing in [l_profile().offset(-2.5), l_profile().rounded(2.5), Profile::circle(1.0).offset(-1.5).offset(1.5)] {
-        assert!(nothing.extrude(1.0).bounds()?.is_empty(), "{nothing:?}");
-        assert!(!nothing.contains([2.0, 2.0])?);
-        assert!((&nothing | Profile::circle(1.0)).contains([0.5, 0.0])?);
-        assert!(nothing.revolve().bounds()?.is_empty());
-    }
-    Ok(())
-}
-
-#[test]
 fn a_filleted_union_in_the_plane_is_flush() -> Outcome {
     let low = Profile::rectangle([10.0; 2]).translate([5.0, 5.0]);
     let both = low.union_with(Profile::rectangle([10.0, 20.0]).translate([15.0, 10.0]), fillet(2.0));
