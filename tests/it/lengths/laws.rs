@@ -311,7 +311,7 @@ fn laws_hold_for_a_few_solids() {
 }
 
 /// The numbers that are asked for: `LENGTHS_SEEDS=0..2000`.
-fn seeds(otherwise: std::ops::Range<u64>) -> std::ops::Range<u64> {
+pub(super) fn seeds(otherwise: std::ops::Range<u64>) -> std::ops::Range<u64> {
     let text = std::env::var("LENGTHS_SEEDS").unwrap_or_default();
     let parsed = text.split_once("..").and_then(|(from, to)| Some(from.parse().ok()?..to.parse().ok()?));
     parsed.unwrap_or(otherwise)
