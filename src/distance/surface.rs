@@ -7,8 +7,10 @@ use glam::DVec3;
 use super::compiled_with;
 use super::facets::{Facets, sharp};
 use super::mend::mend;
+use super::outline::border;
 use super::quilt::{Care, GROSS, Quilt};
 use super::sheets::cover;
+use super::strips::strips;
 use crate::error::MeshingError;
 use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted, reach};
 use crate::mesh::{Hidden, Slopes, Subject};
@@ -76,6 +78,15 @@ impl DistanceSource for FromMeshes {
         }
         if !size.is_finite() {
             return Err(SolidError::Unbounded { path: programs.unbounded.clone() }.into());
+        }
+        // Polygons and their offsets have closed forms.
+        if flat == Some(2)
+            && let Some(curves) = border(solid, run)?
+        {
+            let patches = Arc::new(Patches::new(&strips(&curves, size), run)?);
+            run.report(1.0);
+            let rounding = FINEST * farthest(&bounds, size);
+            return Ok(Surface::new(patches, Accuracy::of_surface(rounding, rounding), flat));
         }
         let tolerance = self.tolerance(programs, wanted);
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
@@ -157,8 +168,7 @@ impl DistanceSource for FromMeshes {
     fn tolerance(&self, programs: &Compiled, wanted: &Wanted<'_>) -> f64 {
         let (bounds, _, size) = extent(programs, wanted);
         // Vertices of meshes are in single precision.
-        let farthest = [bounds.min, bounds.max].map(|corner| corner.abs().max_element());
-        let far = farthest.into_iter().filter(|far| far.is_finite()).fold(size, f64::max);
+        let far = farthest(&bounds, size);
         // A surface that is measured itself has had its part, and is no smoother than what it was
         // measured to. What is measured from it need not be as coarse as all of them together, or
         // tolerances would double with each length of a length.
@@ -170,6 +180,12 @@ impl DistanceSource for FromMeshes {
         };
         least.max(programs.accuracy.grain())
     }
+}
+
+/// The size of a solid, or how far it reaches from the origin, along axes that it ends along.
+fn farthest(bounds: &Bounds, size: f64) -> f64 {
+    let farthest = [bounds.min, bounds.max].map(|corner| corner.abs().max_element());
+    farthest.into_iter().filter(|far| far.is_finite()).fold(size, f64::max)
 }
 
 /// What of a solid is to be measured: its box, the axis along which it is a cylinder, and its size
