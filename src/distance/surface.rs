@@ -55,6 +55,9 @@ const LOOKING: f64 = 0.05;
 /// The part of what is left to do that is taken to be done with cells of one size.
 const ATTEMPT: f64 = 0.7;
 
+/// Cells are halved down to this part where nothing is found, though something may be hidden.
+const NOTHING: f64 = 1.0 / 8.0;
+
 /// So many more cells there may be where something is hidden in them.
 const HIDDEN: f64 = 12.0;
 
@@ -121,7 +124,7 @@ impl DistanceSource for FromMeshes {
             hidden.retain(|hidden| hidden.cell.intersects(&near));
             // Two triangles a cell.
             let count = 0.5 * facets.triangles.len() as f64;
-            let mut is_last = 4.0 * count > enough;
+            let mut is_last = 4.0 * count > enough || count == 0.0 && cell < NOTHING * longest;
             let mut care = Care::new(tolerance);
             if !is_last && best.is_none() {
                 care.patience = PATIENCE;
@@ -144,11 +147,14 @@ impl DistanceSource for FromMeshes {
                     is_enough = is_near(&found);
                     // What is hidden is looked for once the rest is as it is to be.
                     if is_enough || is_last {
-                        let missed = cover(&mut found.1, &subject, &hidden, &slopes, tolerance, &to_sew)?;
+                        let mut missed = cover(&mut found.1, &subject, &hidden, &slopes, tolerance, &to_sew)?;
+                        if found.1.patches.is_empty() {
+                            missed = hidden.iter().map(|hidden| hidden.cell).collect();
+                        }
                         if !missed.is_empty() {
                             found.1.miss(missed, cell);
                             is_enough = false;
-                            is_last &= !is_gentle || 4.0 * count > HIDDEN * enough;
+                            is_last &= count == 0.0 || !is_gentle || 4.0 * count > HIDDEN * enough;
                         }
                         found.0 = found.1.reached(FEW);
                         best = Some(found);

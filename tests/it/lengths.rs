@@ -15,7 +15,7 @@ mod walls;
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use rvachev::{
     Blend, Bounds, CellSize, Cuboid, Extrusion, Gielis, Mesh, MeshReport, MeshSettings, MinimalSurface, NetworkLattice,
     Prism, Profile, Pyramid, RFunction, SheetLattice, Solid, Supershape, Torus,
@@ -659,6 +659,28 @@ fn ribs_are_found(moved: &Solid, by: f64) -> Outcome {
         }
         let value = moved.value((1.0 + by) * side)?;
         assert!(value.abs() < 0.02 * by, "{value} beyond the rim of rib {number}");
+    }
+    Ok(())
+}
+
+/// Rods and walls thinner than any cell, on a body and beside it, straight and turned: what is
+/// measured of them is theirs, or it is told how far it may be off.
+#[test]
+fn rods_thinner_than_cells_are_found_or_told() -> Outcome {
+    let body = Solid::superellipsoid([1.0, 0.8, 0.6], 0.5, 0.7);
+    let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
+    let rod = |thickness: f64| Solid::cylinder(0.5 * thickness, 3.0).rotate_y(rad(PI / 2.0));
+    let oval = |thickness: f64| Solid::superellipsoid([1.5, thickness, 0.7 * thickness], 1.0, 1.0);
+    for (name, thin, body, turn) in [
+        ("a rod on a body", rod(3e-4), body.clone(), DQuat::IDENTITY),
+        ("an oval rod beside it", oval(3e-3), at(body.clone(), [0.0, 0.0, 3.0]), turn),
+        ("a wall on it", Solid::cuboid([3.0, 3e-4, 1.0]), body.clone(), turn),
+    ] {
+        let moved = (thin | body).rotate(turn).offset(0.1);
+        let is_found = moved.contains(turn * DVec3::new(1.4, 0.08, 0.0))?;
+        let accuracy = moved.accuracy()?;
+        println!("{name}: {is_found}, {accuracy:?}");
+        assert!(is_found || accuracy.error > 20.0 * accuracy.tolerance, "{name}: {accuracy:?}");
     }
     Ok(())
 }

@@ -255,7 +255,8 @@ fn judge(name: &str, tally: &Tally) {
 fn laws_hold_for_a_few_profiles() {
     for ((name, law), count) in LAWS.into_iter().zip([8, 3, 2]) {
         let mut tally = Tally::default();
-        (9300..9300 + count).for_each(|seed| attempt(law, seed, &mut tally));
+        // Of 109 a sliver is left that no cell of the first size shows.
+        (9300..9300 + count).chain([109]).for_each(|seed| attempt(law, seed, &mut tally));
         judge(name, &tally);
         assert!(tally.tried > 200 && tally.failures.is_empty(), "{name}: {} of {}", tally.failures.len(), tally.tried);
     }
