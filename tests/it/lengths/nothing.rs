@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 use rvachev::{
     Blend, Bounds, Camera, CellSize, ContourSettings, Extrusion, Face, Features, Helix, Mesh, MeshSettings, MeshSolid,
-    Plane, PlaneBounds, Profile, Quality, RenderSettings, Run, Solid, Style, ThinFeatures,
+    Plane, PlaneBounds, Profile, Quality, RFunction, RenderSettings, Run, Solid, Style, ThinFeatures,
     law::{SineWave, SmoothStep},
     program::Region,
     rad,
@@ -37,7 +37,7 @@ fn nothings() -> Vec<(&'static str, Solid)> {
         ("a level", ball.level(-2.0)),
         ("apart", &cube & at(cube.clone(), [20.0, 0.0, 0.0])),
         ("taken away", &ball - &cube),
-        ("from itself", &cube - &cube),
+        ("from itself", cube.difference(&cube, RFunction::MIN_MAX)),
         ("extruded", l.extrude(2.0)),
         ("extruded and twisted", round.extrude_with(&bent)),
         ("revolved", round.translate([3.0, 0.0]).revolve()),
@@ -82,7 +82,7 @@ fn made_of(nothing: &Solid) -> Vec<(&'static str, Solid)> {
         ("simplified", nothing.simplified()),
         ("intersection", nothing & &ball),
         ("difference", nothing - &ball),
-        ("union", nothing | nothing),
+        ("union", nothing.union(nothing, RFunction::MIN_MAX)),
         ("fillet", nothing.intersection_with(&ball, fillet(1.0))),
         ("fillet of nothing", nothing.union_with(nothing, fillet(1.0))),
         ("fillets", Solid::union_all_with([nothing, nothing], fillet(1.0))),
