@@ -1,10 +1,10 @@
-//! The border of polygons that are joined in the plane, and the curve at a distance from it: straight
-//! lines and arcs, in closed form.
+//! The border of polygons that are joined in the plane, and the curve at a distance from it: lines
+//! and arcs, in closed form.
 //!
 //! ```text
-//!      ._______.          The curve is a part of the lines beside the border's pieces and of the circles
-//!     /  .___.  \         about their ends. Where these cross they are cut, and what is nearer to some
-//!     |  |   |  |         other piece is left out.
+//!      ._______.       The curve is a part of the lines beside the border's pieces and of the
+//!     /  .___.  \      circles about their ends. Where these cross they are cut, and what is
+//!     |  |   |  |      nearer to some other piece is left out.
 //!     \__|   |__/
 //! ```
 
@@ -188,7 +188,7 @@ struct Corner {
     starts: Vec<usize>,
 }
 
-/// The corners of pieces, which are so far apart; of two that are nearer some may be known to either.
+/// The corners of pieces. Two that are no farther apart than this may be one.
 fn corners(pieces: &[[DVec2; 2]], apart: f64) -> Vec<Corner> {
     let mut known: HashMap<[i64; 2], usize> = HashMap::new();
     let mut corners: Vec<Corner> = Vec::new();

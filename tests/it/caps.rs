@@ -142,7 +142,7 @@ fn rims_of_a_gear_and_of_a_plate_with_a_hole_have_their_volume_and_no_dust() -> 
         assert_eq!((report.shells, report.genus), (1, Some(genus)), "{name}, {caps:?}");
         near(report.volume, want, 5e-4 * want);
     }
-    // The largest circle in the gear touches between the teeth; that in the plate two sides and the hole.
+    // The largest circle in the gear is between the teeth; that in the plate touches the hole.
     for (profile, most) in [(gear(), 15.957), (plate, 7.15)] {
         for caps in [Caps::Rounded, Caps::Chamfered] {
             let high = |size: f64| profile.extrude_with(&Extrusion { caps: caps(size), ..Extrusion::new(40.0) });

@@ -21,7 +21,7 @@ fn contains(polygon: &[DVec2], p: DVec2) -> bool {
     crossed.count() % 2 == 1
 }
 
-/// How far along a straight line from `a` to `b` another one crosses it, and how far along that one.
+/// How far along a line from `a` to `b` another one crosses it, and how far along that one.
 fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<[f64; 2]> {
     let (along, other) = (b - a, d - c);
     let sine = along.perp_dot(other);
