@@ -263,6 +263,9 @@
 //! rounding errors leave. Whether a point is inside is still told by the solid's own value.
 //! Openings and closings measure twice: the solid, and where the centre of the ball may be.
 //!
+//! Of profiles that are polygons, or joined of polygons by R-functions, of up to 2000 edges, the
+//! border and the curve at a distance from it are known: lines and arcs, in single precision.
+//!
 //! # Accuracy
 //!
 //! A measured surface is right to the power of two at or below a thousandth of the length that is

@@ -8,6 +8,9 @@
 //!                                             program's sign: a leaf like any other
 //! ```
 //!
+//! In the plane, what polygons are joined of and where it is at a distance is lines and arcs, which
+//! are put together without a mesh.
+//!
 //! A length that its operand's own value does not tell, an offset, the inner face of a shell, the
 //! ball of a fillet, is measured from the operand's surface. The surface is found once, when the
 //! solid is compiled, and kept for all solids that are equal to the operand.
@@ -17,11 +20,13 @@ mod crease;
 mod facets;
 mod mend;
 mod moved;
+mod outline;
 mod piece;
 mod plots;
 mod quilt;
 mod seam;
 mod sheets;
+mod strips;
 mod surface;
 
 #[cfg(test)]

@@ -7,8 +7,10 @@ use glam::DVec3;
 use super::compiled_with;
 use super::facets::{Facets, sharp};
 use super::mend::mend;
+use super::outline::border;
 use super::quilt::{Care, GROSS, Quilt};
 use super::sheets::cover;
+use super::strips::strips;
 use crate::error::MeshingError;
 use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted, reach};
 use crate::mesh::{Hidden, Slopes, Subject};
@@ -53,6 +55,9 @@ const LOOKING: f64 = 0.05;
 /// The part of what is left to do that is taken to be done with cells of one size.
 const ATTEMPT: f64 = 0.7;
 
+/// Cells are halved down to this part where nothing is found, though something may be hidden.
+const NOTHING: f64 = 1.0 / 8.0;
+
 /// So many more cells there may be where something is hidden in them.
 const HIDDEN: f64 = 12.0;
 
@@ -76,6 +81,15 @@ impl DistanceSource for FromMeshes {
         }
         if !size.is_finite() {
             return Err(SolidError::Unbounded { path: programs.unbounded.clone() }.into());
+        }
+        // Polygons and their offsets have closed forms.
+        if flat == Some(2)
+            && let Some(curves) = border(solid, run)?
+        {
+            let patches = Arc::new(Patches::new(&strips(&curves, size), run)?);
+            run.report(1.0);
+            let rounding = FINEST * farthest(&bounds, size);
+            return Ok(Surface::new(patches, Accuracy::of_surface(rounding, rounding), flat));
         }
         let tolerance = self.tolerance(programs, wanted);
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
@@ -110,7 +124,7 @@ impl DistanceSource for FromMeshes {
             hidden.retain(|hidden| hidden.cell.intersects(&near));
             // Two triangles a cell.
             let count = 0.5 * facets.triangles.len() as f64;
-            let mut is_last = 4.0 * count > enough;
+            let mut is_last = 4.0 * count > enough || count == 0.0 && cell < NOTHING * longest;
             let mut care = Care::new(tolerance);
             if !is_last && best.is_none() {
                 care.patience = PATIENCE;
@@ -133,11 +147,14 @@ impl DistanceSource for FromMeshes {
                     is_enough = is_near(&found);
                     // What is hidden is looked for once the rest is as it is to be.
                     if is_enough || is_last {
-                        let missed = cover(&mut found.1, &subject, &hidden, &slopes, tolerance, &to_sew)?;
+                        let mut missed = cover(&mut found.1, &subject, &hidden, &slopes, tolerance, &to_sew)?;
+                        if found.1.patches.is_empty() {
+                            missed = hidden.iter().map(|hidden| hidden.cell).collect();
+                        }
                         if !missed.is_empty() {
                             found.1.miss(missed, cell);
                             is_enough = false;
-                            is_last &= !is_gentle || 4.0 * count > HIDDEN * enough;
+                            is_last &= count == 0.0 || !is_gentle || 4.0 * count > HIDDEN * enough;
                         }
                         found.0 = found.1.reached(FEW);
                         best = Some(found);
@@ -157,8 +174,7 @@ impl DistanceSource for FromMeshes {
     fn tolerance(&self, programs: &Compiled, wanted: &Wanted<'_>) -> f64 {
         let (bounds, _, size) = extent(programs, wanted);
         // Vertices of meshes are in single precision.
-        let farthest = [bounds.min, bounds.max].map(|corner| corner.abs().max_element());
-        let far = farthest.into_iter().filter(|far| far.is_finite()).fold(size, f64::max);
+        let far = farthest(&bounds, size);
         // A surface that is measured itself has had its part, and is no smoother than what it was
         // measured to. What is measured from it need not be as coarse as all of them together, or
         // tolerances would double with each length of a length.
@@ -170,6 +186,12 @@ impl DistanceSource for FromMeshes {
         };
         least.max(programs.accuracy.grain())
     }
+}
+
+/// The size of a solid, or how far it reaches from the origin, along axes that it ends along.
+fn farthest(bounds: &Bounds, size: f64) -> f64 {
+    let farthest = [bounds.min, bounds.max].map(|corner| corner.abs().max_element());
+    farthest.into_iter().filter(|far| far.is_finite()).fold(size, f64::max)
 }
 
 /// What of a solid is to be measured: its box, the axis along which it is a cylinder, and its size

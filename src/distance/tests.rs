@@ -254,3 +254,18 @@ fn equal_solids_have_one_surface() {
     drop(other);
     assert_eq!(Arc::strong_count(&first), 1, "it outlives all that have it");
 }
+
+/// Of flat faces and of curved ones, with their share of the hierarchy.
+#[test]
+fn a_patch_takes_at_most_150_bytes() {
+    let plate = Solid::cuboid([4.0, 4.0, 0.4]);
+    let pin =
+        |n: u32| Solid::cylinder(0.1, 1.0).translate([-1.5 + 0.6 * f64::from(n % 6), f64::from(n / 6) - 1.5, 0.0]);
+    let pins = Solid::union_all((0..24).map(pin).chain([plate]), crate::RFunction::MIN_MAX);
+    for solid in [holed(), pins, Solid::superellipsoid([2.0, 1.0, 1.5], 0.4, 0.6).twist(deg(20.0))] {
+        let patches = surface_of(&solid).unwrap().patches.clone();
+        let each = patches.bytes() as f64 / patches.len() as f64;
+        println!("{} patches, {each:.1} bytes each", patches.len());
+        assert!(patches.len() > 1000 && each <= 150.0, "{each} bytes each of {}", patches.len());
+    }
+}

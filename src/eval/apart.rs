@@ -96,7 +96,9 @@ pub(super) fn measure(
         Node::Length { ball: Some(ball), length, .. } => {
             let wanted = Wanted { length: length.amount(), tolerance, region: &Bounds::ALL };
             let (field, accuracy) = distance(ball, &wanted, source, run)?;
-            let is_gone = length.inwards() > 0.0 && kept(ball).is_none_or(|programs| programs.bounds.is_empty());
+            // Of an opening nothing is left if there is no room for the ball, of a closing if
+            // there was nothing to close.
+            let is_gone = kept(ball).is_none_or(|programs| programs.bounds.is_empty());
             Measured { field, accuracy, is_gone, sides: Vec::new() }
         }
         Node::Length { operand, length, about, .. } => {
@@ -115,8 +117,9 @@ pub(super) fn measure(
             if let Some(axis) = programs.flat_axis() {
                 (bounds.min[axis], bounds.max[axis]) = (0.0, 0.0);
             }
+            let is_thin = inwards > 0.0 && bounds.is_finite();
             let is_gone =
-                inwards > 0.0 && bounds.is_finite() && !is_deeper(&*field, &bounds, accuracy.tolerance + inwards, run)?;
+                bounds.is_empty() || is_thin && !is_deeper(&*field, &bounds, accuracy.tolerance + inwards, run)?;
             Measured { field, accuracy, is_gone, sides: Vec::new() }
         }
         Node::Blend { operation, blend, operands, ball: Some(ball), .. } => {

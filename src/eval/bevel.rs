@@ -13,6 +13,7 @@ use glam::{DAffine3, DVec3};
 
 use super::chamfer::{Chamfer, Parts};
 use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
+use super::even::{either, ends};
 use super::{Program, Tape};
 use crate::{Bounds, Dual, Interval, Jet, ParamError, Real};
 use rvachev_field::{AnyField, Chunk, VALUE_LIMIT, Way, Zone, bits, chained, mean_value_range};
@@ -180,6 +181,11 @@ impl AnyField for Bevel {
 
     fn convex(&self) -> bool {
         false
+    }
+
+    fn axes(&self) -> [bool; 3] {
+        let of_operands = self.operands.iter().map(|operand| operand.axes());
+        of_operands.fold(ends(&self.bounds), either)
     }
 
     fn range(&self, zone: &Zone) -> Interval {

@@ -95,6 +95,10 @@ impl AnyField for Composite {
         false
     }
 
+    fn axes(&self) -> [bool; 3] {
+        self.program.axes()
+    }
+
     fn range(&self, zone: &Zone) -> Interval {
         self.program.range_zone(zone)
     }

@@ -25,6 +25,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::composite::unscaled;
+use super::even::{either, ends};
 use super::few::{Few, Lane};
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::VALUE_LIMIT;
@@ -270,6 +271,12 @@ impl AnyField for Fill {
 
     fn convex(&self) -> bool {
         false
+    }
+
+    fn axes(&self) -> [bool; 3] {
+        let of_boxes = self.held.iter().map(ends);
+        let of_sides = self.sides.iter().map(|side| side.distance.field.axes());
+        of_boxes.chain(of_sides).fold(self.ball.field.axes(), either)
     }
 
     fn is_steady(&self) -> bool {

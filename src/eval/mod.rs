@@ -23,6 +23,7 @@ mod context;
 mod contrary;
 mod crossing;
 mod depth;
+mod even;
 mod exact;
 mod extent;
 mod few;

@@ -7,11 +7,12 @@
 
 use std::sync::Arc;
 
+use super::even::either;
 use super::pass::{Asked, Pass, Sign};
 use super::program::{Edge, Kind, Node, Program, Region};
 use super::ranges::{hull_of, joined};
 use super::scene::Instance;
-use crate::{Bounds, Dual, Interval};
+use crate::{Bounds, Interval};
 use rvachev_field::{AnyField, Pieces, Zone};
 
 /// What a region holds of a solid, and the program for it if that is another.
@@ -79,25 +80,7 @@ impl Program {
     pub(crate) fn dear_axes(&self, dear: usize) -> Option<[bool; 3]> {
         let leaves = self.nodes.iter().filter_map(Node::valued_by);
         let dear = leaves.filter(|&leaf| self.instance(leaf).field.cost() > dear);
-        dear.map(|leaf| self.axes_of(leaf)).reduce(|a, b| [0, 1, 2].map(|axis| a[axis] || b[axis]))
-    }
-
-    /// Whether the value is found to be the same all along an axis, over a box.
-    pub(crate) fn is_even_along(&self, axis: usize, region: &Bounds) -> bool {
-        let by_slope = || {
-            let over = self.evaluate(Dual::point(Zone::of_bounds(region).hull()), &mut Vec::new());
-            over.gradient()[axis] == Interval::ZERO
-        };
-        self.nodes.iter().filter_map(Node::valued_by).all(|leaf| !self.axes_of(leaf)[axis]) || by_slope()
-    }
-
-    /// The axes of the world that a leaf depends on.
-    pub(super) fn axes_of(&self, leaf: u32) -> [bool; 3] {
-        let instance = self.instance(leaf);
-        let own = instance.field.axes();
-        let matrix = instance.to_local.matrix3;
-        // A deformation mixes the axes.
-        [0, 1, 2].map(|axis| instance.frame != 0 || (0..3).any(|to| own[to] && matrix.col(axis)[to] != 0.0))
+        dear.map(|leaf| self.axes_of(leaf)).reduce(either)
     }
 
     /// A sound range of the value over a box; infinite where nothing is known.

@@ -61,7 +61,7 @@ impl Contours {
     /// The area that they enclose, holes taken off.
     #[must_use]
     pub fn area(&self) -> f64 {
-        self.lines.iter().map(Polyline::area).sum()
+        self.lines.iter().fold(0.0, |sum, line| sum + line.area())
     }
 
     /// Every outline with the holes that are in it; an island within a hole is an outline of its

@@ -112,6 +112,46 @@ fn rims_have_the_volume_of_their_formula() -> Outcome {
     Ok(())
 }
 
+/// A gear of twelve teeth and 96 edges, each tooth of eight corners: radii, and angles in pitches.
+fn gear() -> Profile {
+    const TOOTH: [[f64; 2]; 4] = [[16.0, -0.36], [16.2, -0.27], [17.5, -0.22], [20.0, -0.12]];
+    let half = TOOTH.into_iter().chain(TOOTH.into_iter().rev().map(|[radius, angle]| [radius, -angle]));
+    let corners = (0..12).flat_map(|tooth| half.clone().map(move |[r, angle]| [r, f64::from(tooth) + angle]));
+    Profile::polygon(corners.map(|[r, pitches]| r * DVec2::from_angle(PI * pitches / 6.0)))
+}
+
+/// The volume of the gear by shapely 2.1: `buffer(-s, quad_segs=256)`, summed over 400 steps of t.
+#[test]
+fn rims_of_a_gear_and_of_a_plate_with_a_hole_have_their_volume_and_no_dust() -> Outcome {
+    let plate = Profile::rounded_rectangle([40.0, 20.0], 4.0) - Profile::circle(6.0);
+    let of_plate = |s: f64| {
+        let (corner, hole) = (4.0 - s, 6.0 + s);
+        (40.0 - 2.0 * s) * (20.0 - 2.0 * s) - (4.0 - PI) * corner * corner - PI * hole * hole
+    };
+    for (name, profile, caps, want, genus) in [
+        ("gear", gear(), Caps::Rounded(SIZE), 5809.6173, 0),
+        ("gear", gear(), Caps::Chamfered(SIZE), 5712.7246, 0),
+        ("plate", plate.clone(), Caps::Rounded(SIZE), volume(of_plate, Caps::Rounded(SIZE)), 1),
+        ("plate", plate.clone(), Caps::Chamfered(SIZE), volume(of_plate, Caps::Chamfered(SIZE)), 1),
+    ] {
+        let settings = MeshSettings { cell: CellSize::LongestSide(128), ..MeshSettings::default() };
+        let mesh = with(&profile, caps).mesh(&settings)?;
+        let report = mesh.check();
+        println!("{name}, {caps:?}: {:.4}, want {want:.4}; {report}", report.volume);
+        assert!(report.is_sound(), "{name}, {caps:?}: {report}");
+        assert_eq!((report.shells, report.genus), (1, Some(genus)), "{name}, {caps:?}");
+        near(report.volume, want, 5e-4 * want);
+    }
+    // The largest circle in the gear is between the teeth; that in the plate touches the hole.
+    for (profile, most) in [(gear(), 15.957), (plate, 7.15)] {
+        for caps in [Caps::Rounded, Caps::Chamfered] {
+            let high = |size: f64| profile.extrude_with(&Extrusion { caps: caps(size), ..Extrusion::new(40.0) });
+            assert!(high(0.95 * most).bounds().is_ok() && refusal(&high(1.05 * most)).contains("largest circle"));
+        }
+    }
+    Ok(())
+}
+
 /// The distance to an outline that is given by close points.
 fn nearest(outline: &[DVec2], p: DVec2) -> f64 {
     outline.iter().map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min).sqrt()

@@ -24,6 +24,7 @@ mod forms;
 mod formula;
 mod from_mesh;
 mod golden;
+mod house;
 #[cfg(feature = "import")]
 mod import;
 mod inputs;

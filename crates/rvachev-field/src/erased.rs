@@ -285,6 +285,11 @@ impl<F: Field> AnyField for F {
         Field::exact(self)
     }
 
+    fn axes(&self) -> [bool; 3] {
+        let far = Interval::new(-1e9, 1e9);
+        self.box_slopes([far; 3]).map(|slope| slope != Interval::ZERO)
+    }
+
     fn convex(&self) -> bool {
         Field::convex(self)
     }

@@ -113,7 +113,7 @@ impl Warp for Bend {
     fn check(&self, b: &Bounds) -> Result<(), ParamError> {
         check::finite("curvature", self.curvature)?;
         check::angle("angle", self.angle, -1e9, 1e9)?;
-        if self.curvature.abs() < Bend::FLAT {
+        if self.curvature.abs() < Bend::FLAT || b.is_empty() {
             return Ok(());
         }
         // Conservative: the box of the solid, rather than the solid, must stay on this side

@@ -391,6 +391,10 @@ impl AnyField for Polygon {
         false
     }
 
+    fn axes(&self) -> [bool; 3] {
+        [true, true, false]
+    }
+
     fn growth(&self) -> glam::DVec3 {
         glam::DVec3::ONE
     }

@@ -236,6 +236,10 @@ impl AnyField for NearEdges {
         false
     }
 
+    fn axes(&self) -> [bool; 3] {
+        [true, true, false]
+    }
+
     fn growth(&self) -> glam::DVec3 {
         glam::DVec3::ONE
     }
