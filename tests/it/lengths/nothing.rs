@@ -169,7 +169,7 @@ fn has_no_measures(nothing: &Solid) -> Outcome {
     let measures = nothing.measure(1e-2)?;
     assert_eq!((measures.volume, measures.area, measures.centroid), (0.0, 0.0, None));
     let thickness = nothing.thickness(&settings(), &run)?;
-    assert_eq!((thickness.least, thickness.share_below(1.0)), (f64::INFINITY, 0.0));
+    assert_eq!((thickness.least, thickness.share_below(1.0)), (f64::INFINITY, Ok(0.0)));
     assert!(!format!("{thickness} {:?}", thickness.histogram(3)).contains("NaN"));
     assert_eq!(nothing.clearance(&ball, &run)?, None);
     assert_eq!(ball.clearance(nothing, &run)?, None);
