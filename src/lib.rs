@@ -183,7 +183,7 @@
 //! ```
 //!
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
-//! rings of parts, leaves of one's own. Explained with pictures are [lengths](lengths),
+//! rings of parts, leaves of one's own. Explained with pictures are [lengths],
 //! [what is made and what is measured](measuring) (volumes, thickness, clearance), how
 //! [points become solids](scans), and [whole parts](parts), from meshes and scans to code.
 //!

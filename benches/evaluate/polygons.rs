@@ -1,5 +1,5 @@
-//! A polygon of 5000 edges: building it, its values through the hierarchy, and narrowed; and polygons
-//! of very many edges that are long beside what is between them.
+//! A polygon of 5000 edges: building it, its values through the hierarchy, and narrowed; and
+//! polygons of very many edges that are long beside what is between them.
 
 use std::f64::consts::TAU;
 use std::hint::black_box;

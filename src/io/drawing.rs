@@ -49,7 +49,7 @@ pub fn write_svg(lines: &[Polyline], out: impl Write) -> io::Result<()> {
 ///
 /// # Errors
 ///
-/// Those of [`write_svg`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_svg`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_svg_on(lines: &[Polyline], run: &Run, mut out: impl Write) -> io::Result<()> {
     let meter = metered(lines, run)?;
@@ -115,7 +115,7 @@ pub fn write_dxf(lines: &[Polyline], out: impl Write) -> io::Result<()> {
 ///
 /// # Errors
 ///
-/// Those of [`write_dxf`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_dxf`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_dxf_on(lines: &[Polyline], run: &Run, mut out: impl Write) -> io::Result<()> {
     let meter = metered(lines, run)?;

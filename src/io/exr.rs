@@ -81,7 +81,7 @@ pub fn write_exr<P: Floats>(image: &Image<P>, out: impl Write) -> io::Result<()>
 ///
 /// # Errors
 ///
-/// Those of [`write_exr`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_exr`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_exr_on<P: Floats>(image: &Image<P>, run: &Run, mut out: impl Write) -> io::Result<()> {
     run.check().map_err(io::Error::other)?;

@@ -24,7 +24,7 @@ pub fn write_gif(pictures: &[Image], pause: Duration, out: impl Write) -> io::Re
 ///
 /// # Errors
 ///
-/// Those of [`write_gif`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_gif`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_gif_on(pictures: &[Image], pause: Duration, run: &Run, out: impl Write) -> io::Result<()> {
     if pictures.is_empty() {

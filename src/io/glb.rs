@@ -56,11 +56,11 @@ pub fn write_glb(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::R
     write_glb_on(mesh, settings, &Run::default(), out)
 }
 
-/// [`write_glb`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+/// [`write_glb`] on a [`Run`], which is told how much is written, and may be cancelled.
 ///
 /// # Errors
 ///
-/// Those of [`write_glb`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_glb`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_glb_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
     watched(size(mesh), run, out, |run, out| written(mesh, settings, run, out))

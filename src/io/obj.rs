@@ -49,11 +49,11 @@ pub fn write_obj(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::R
     write_obj_on(mesh, settings, &Run::default(), out)
 }
 
-/// [`write_obj`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+/// [`write_obj`] on a [`Run`], which is told how much is written, and may be cancelled.
 ///
 /// # Errors
 ///
-/// Those of [`write_obj`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_obj`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_obj_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
     watched(size(mesh), run, out, |run, out| written(mesh, settings, run, out))

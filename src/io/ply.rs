@@ -47,11 +47,11 @@ pub fn write_ply(mesh: &Mesh, out: impl Write) -> io::Result<()> {
     write_ply_on(mesh, &Run::default(), out)
 }
 
-/// [`write_ply`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+/// [`write_ply`] on a [`Run`], which is told how much is written, and may be cancelled.
 ///
 /// # Errors
 ///
-/// Those of [`write_ply`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_ply`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_ply_on(mesh: &Mesh, run: &Run, out: impl Write) -> io::Result<()> {
     watched(size(mesh), run, out, |_, out| written(mesh, out))

@@ -68,7 +68,7 @@ pub fn write_png<P: Colors>(image: &Image<P>, out: impl Write) -> io::Result<()>
 ///
 /// # Errors
 ///
-/// Those of [`write_png`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_png`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_png_on<P: Colors>(image: &Image<P>, run: &Run, out: impl Write) -> io::Result<()> {
     run.check().map_err(io::Error::other)?;

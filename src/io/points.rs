@@ -31,11 +31,11 @@ pub fn write_ply_points(cloud: &PointCloud, out: impl Write) -> io::Result<()> {
     write_ply_points_on(cloud, &Run::default(), out)
 }
 
-/// [`write_ply_points`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+/// [`write_ply_points`] on a [`Run`], which is told how much is written, and may be cancelled.
 ///
 /// # Errors
 ///
-/// Those of [`write_ply_points`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_ply_points`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_ply_points_on(cloud: &PointCloud, run: &Run, out: impl Write) -> io::Result<()> {
     watched(cloud.len(), run, out, |_, out| written(cloud, out))

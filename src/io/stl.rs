@@ -81,11 +81,11 @@ pub fn write_stl(mesh: &Mesh, mut out: impl Write) -> io::Result<()> {
     out.flush()
 }
 
-/// [`write_stl`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+/// [`write_stl`] on a [`Run`], which is told how much is written, and may be cancelled.
 ///
 /// # Errors
 ///
-/// Those of [`write_stl`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_stl`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 ///
 /// ```
@@ -124,11 +124,11 @@ pub fn write_stl_ascii(mesh: &Mesh, out: impl Write) -> io::Result<()> {
     out.flush()
 }
 
-/// [`write_stl_ascii`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+/// [`write_stl_ascii`] on a [`Run`], which is told how much is written, and may be cancelled.
 ///
 /// # Errors
 ///
-/// Those of [`write_stl_ascii`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_stl_ascii`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_stl_ascii_on(mesh: &Mesh, run: &Run, out: impl Write) -> io::Result<()> {
     watched(ASCII * size(mesh), run, out, |_, out| write_stl_ascii(mesh, out))

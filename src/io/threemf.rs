@@ -63,11 +63,11 @@ pub fn write_3mf(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::R
     write_3mf_on(mesh, settings, &Run::default(), out)
 }
 
-/// [`write_3mf`] on a [`Run`], which is told roughly how much is written, and may be cancelled.
+/// [`write_3mf`] on a [`Run`], which is told how much is written, and may be cancelled.
 ///
 /// # Errors
 ///
-/// Those of [`write_3mf`], and one that holds a [`Cancelled`](crate::Cancelled) if the work was cancelled:
+/// Those of [`write_3mf`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
 /// what is written by then is no whole file.
 pub fn write_3mf_on(mesh: &Mesh, settings: &SaveSettings, run: &Run, out: impl Write) -> io::Result<()> {
     // How far it is is told by the text, not by the archive, in which it is a fifth as long.
