@@ -130,8 +130,8 @@ const KEPT: usize = 32;
 impl Patches {
     /// Finds the nearest patches to points of the surface's frame: of flat ones the nearest, of
     /// curved ones all that may be. It begins with boxes that hold all that may be nearest, the
-    /// last one first; `seeds` are patches that are likely to be near. What is found below the range is a bound
-    /// of the distance, and what is beyond is held at its end.
+    /// last one first; `seeds` are patches that are likely to be near. What is found below the
+    /// range is a bound of the distance, and what is beyond is held at its end.
     #[inline(always)]
     pub(super) fn search<R: Packet>(
         &self,
