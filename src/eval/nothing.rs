@@ -65,17 +65,17 @@ impl AnyField for Nothing {
 
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
         let [out] = chunk.out;
-        out.fill(-VALUE_LIMIT as f32);
+        out.fill(chunk.placement.finish(-VALUE_LIMIT) as f32);
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
         let [out] = chunk.out;
-        out.fill(-VALUE_LIMIT);
+        out.fill(chunk.placement.finish(-VALUE_LIMIT));
     }
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let [value, slopes @ ..] = chunk.out;
-        value.fill(-VALUE_LIMIT as f32);
+        value.fill(chunk.placement.finish(-VALUE_LIMIT) as f32);
         slopes.into_iter().for_each(|slope| slope.fill(0.0));
     }
 }
