@@ -81,9 +81,9 @@
 //! The thickness at a point of the surface is the diameter of the largest ball that touches there
 //! from inside, and holds nothing that faces the point. Edges are not thin, joints of parts are no
 //! walls. [`ThicknessReport`] has the least and where, the share of the area below a limit, a
-//! histogram, and the mesh and [pictures](ThicknessReport::picture) in colours. Of closed meshes the
-//! triangles themselves are measured, and no wall is lost; of other solids those that are thinner
-//! than a cell may be.
+//! histogram, and the mesh and [pictures](ThicknessReport::picture) in colours. Of closed meshes
+//! the triangles themselves are measured, and no wall is lost; of other solids those that are
+//! thinner than a cell may be.
 //!
 //! ```
 //! use rvachev::{MeshSettings, Run, Solid};
@@ -104,8 +104,8 @@
 //!
 //! How far two solids are apart, with the two nearest points; or how deep they go into each other,
 //! and what volume they have in common. What only touches does not overlap. Of meshes that were
-//! read, and of extruded polygons such as gears, it is told from their triangles, in milliseconds if
-//! they are apart; where they touch over thousands of triangles, or overlap, in some tenths of a
+//! read, and of extruded polygons such as gears, it is told from their triangles, in milliseconds
+//! if they are apart; where they touch over thousands of triangles, or overlap, in some tenths of a
 //! second.
 //!
 //! ```

@@ -32,8 +32,8 @@
 //! ```
 //!
 //! so ranges of first and second derivatives over a box ([`Jet`]) bound the slopes of T in it: rays
-//! go from there by Newton's method, and boxes that the face does not cross are told by the value in
-//! their middle and those slopes.
+//! go from there by Newton's method, and boxes that the face does not cross are told by the value
+//! in their middle and those slopes.
 
 use glam::DVec3;
 

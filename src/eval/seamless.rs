@@ -78,7 +78,8 @@ impl Program {
             for (middle, all) in std::iter::zip(of(&middle), of(&all)) {
                 let slopes = all.d.map(Interval::magnitude);
                 let steepest = slopes.into_iter().fold(0.0, f64::max);
-                // What jumps changes by more than its slopes tell: they are taken for without bound.
+                // What jumps changes by more than its slopes tell: they are taken for without
+                // bound.
                 let change = slopes[0] * size.x + slopes[1] * size.y + slopes[2] * size.z;
                 let is_told =
                     self.instance(leaf).field.is_steady() && all.v.width() <= change + ROUNDING * scale * steepest;

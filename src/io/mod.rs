@@ -16,10 +16,10 @@
 //! | GLB | triangles, strips, fans, points; accessors of any kind, sparse ones too; nodes | data beside the file, compression |
 //! | XYZ, CSV | rows of numbers, with names above the columns or without | |
 //!
-//! Polygons become triangles within them. Files are not trusted: archives are unpacked by `zip`, XML
-//! and JSON parsed by `quick-xml` and `serde_json`, which take whatever bytes there are and are kept
-//! well; they unpack no more than [`LoadSettings::most_bytes`]. All else is read here, so that errors
-//! tell the line or byte, and no header is believed that claims more than there is.
+//! Polygons become triangles within them. Files are not trusted: archives are unpacked by `zip`,
+//! XML and JSON parsed by `quick-xml` and `serde_json`, which take whatever bytes there are and are
+//! kept well; they unpack no more than [`LoadSettings::most_bytes`]. All else is read here, so that
+//! errors tell the line or byte, and no header is believed that claims more than there is.
 //!
 //! # Writers
 //!
@@ -37,7 +37,8 @@
 //! | [`Polyline`](crate::Polyline)s | `.svg`, `.dxf` | see [`write_svg`] and [`write_dxf`] | |
 //!
 //! Each of them has a second form on a [`Run`](crate::Run), which is told how far it is and may be
-//! cancelled ([`write_stl_on`]); what saves to a path has it too ([`Mesh::save_on`](crate::Mesh::save_on)).
+//! cancelled ([`write_stl_on`]); what saves to a path has it too
+//! ([`Mesh::save_on`](crate::Mesh::save_on)).
 //!
 //! No writer joins vertices by their position, and only GLB splits them: where the corners of
 //! a vertex carry different normals, colours or texture coordinates.

@@ -35,8 +35,8 @@ pub fn write_ply_points(cloud: &PointCloud, out: impl Write) -> io::Result<()> {
 ///
 /// # Errors
 ///
-/// Those of [`write_ply_points`], and one that holds a [`Cancelled`](crate::Cancelled) if cancelled:
-/// what is written by then is no whole file.
+/// Those of [`write_ply_points`], and one that holds a [`Cancelled`](crate::Cancelled) if
+/// cancelled: what is written by then is no whole file.
 pub fn write_ply_points_on(cloud: &PointCloud, run: &Run, out: impl Write) -> io::Result<()> {
     watched(cloud.len(), run, out, |_, out| written(cloud, out))
 }

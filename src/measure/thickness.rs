@@ -73,9 +73,9 @@ impl Solid {
     /// the mesh has lost are not seen: see [`thin_features`](Solid::thin_features).
     ///
     /// [Meshes](Solid::from_mesh) that are closed and do not cross themselves are measured
-    /// themselves, wherever they were moved to: the report's mesh is made of their triangles, divided
-    /// to the size of a cell, and nothing is lost, however thin. Of an open mesh the film across the
-    /// opening counts as surface.
+    /// themselves, wherever they were moved to: the report's mesh is made of their triangles,
+    /// divided to the size of a cell, and nothing is lost, however thin. Of an open mesh the film
+    /// across the opening counts as surface.
     ///
     /// # Errors
     /// As for [`mesh`](Solid::mesh): what is wrong with the solid or the settings, or that the work

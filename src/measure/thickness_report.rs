@@ -132,8 +132,8 @@ impl ThicknessReport {
     /// ```
     ///
     /// # Errors
-    /// What is wrong with the thicknesses, the camera or the settings, that the mesh has no triangles, or that the
-    /// work was cancelled.
+    /// What is wrong with the thicknesses, the camera or the settings, that the mesh has no
+    /// triangles, or that the work was cancelled.
     pub fn picture(
         &self,
         [thin, thick]: [f64; 2],

@@ -145,7 +145,8 @@ impl SolidSampler<'_> {
         self.kept.resize_with(self.blocks.len().div_ceil(BATCH), OnceLock::new);
     }
 
-    /// Places points of the block that was sampled last, and says which tape at hand is that block's.
+    /// Places points of the block that was sampled last, and says which tape at hand is that
+    /// block's.
     fn place_at_hand(&self, scratch: &mut Scratch, number: usize, points: &[Vec3A]) -> Option<usize> {
         let step = self.lattice.step() as f32;
         place(points.iter().map(|p| step * *p), &mut scratch.single);

@@ -121,8 +121,8 @@ impl Solid {
     /// miss it; so may one along which an unbounded deformed solid winds without end.
     ///
     /// # Errors
-    /// What is wrong with the solid: see [`SolidError`]; [`SolidError::Argument`] if a coordinate of
-    /// the ray is not finite, or its direction is zero.
+    /// What is wrong with the solid: see [`SolidError`]; [`SolidError::Argument`] if a coordinate
+    /// of the ray is not finite, or its direction is zero.
     ///
     /// ```
     /// use rvachev::Solid;

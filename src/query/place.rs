@@ -211,8 +211,8 @@ impl Profile {
     }
 
     /// Moved along x or y so that a side of its box lies on the line of a side of another profile's
-    /// box: [`Solid::aligned`]. A profile has no [`Bottom`](Face::Bottom) and no [`Top`](Face::Top):
-    /// they are refused when the result is first used.
+    /// box: [`Solid::aligned`]. A profile has no [`Bottom`](Face::Bottom) and no
+    /// [`Top`](Face::Top): they are refused when the result is first used.
     ///
     /// ```
     /// use rvachev::{Face, Profile};

@@ -92,8 +92,8 @@ impl Buffers {
         self.draw_with(layers, number, facing, &Run::default())
     }
 
-    /// [`draw`](Buffers::draw) with a choice of threads, a cancel token and a progress sink. What is
-    /// cancelled has drawn a part.
+    /// [`draw`](Buffers::draw) with a choice of threads, a cancel token and a progress sink. What
+    /// is cancelled has drawn a part.
     ///
     /// # Errors
     ///
@@ -122,8 +122,8 @@ impl Buffers {
         self.classify_with(layers, &Run::default())
     }
 
-    /// [`classify`](Buffers::classify) with a choice of threads, a cancel token and a progress sink.
-    /// What is cancelled has counted in a part.
+    /// [`classify`](Buffers::classify) with a choice of threads, a cancel token and a progress
+    /// sink. What is cancelled has counted in a part.
     ///
     /// # Errors
     ///

@@ -37,8 +37,8 @@ pub(crate) use on_level;
 /// Slices are multiples of this many elements.
 pub const CHUNK: usize = 256;
 
-/// How many points of a chunk there are up to those that are the same as the last: chunks are filled
-/// up with copies of it, which whoever goes point by point need not look at.
+/// How many points of a chunk there are up to those that are the same as the last: chunks are
+/// filled up with copies of it, which whoever goes point by point need not look at.
 #[inline]
 pub fn distinct<E: Element>([x, y, z]: [&[E]; 3]) -> usize {
     let is_same = |i: &usize| x[*i] == x[*i - 1] && y[*i] == y[*i - 1] && z[*i] == z[*i - 1];

@@ -22,6 +22,7 @@ mod ellipsoid;
 mod erase;
 mod erased;
 mod erased_warp;
+mod excess;
 mod fold;
 #[cfg(feature = "formula")]
 mod formula;

@@ -30,8 +30,9 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::blend::{self, RicciSide};
+use super::excess::{ExcessKind, TINY};
 use super::{ParamError, VALUE_LIMIT};
-use crate::{Euclid, Interval, Joined, Monotone, Monotone3, Norm, NormKind, Op, Powers, Real};
+use crate::{Euclid, Interval, Joined, Monotone, Monotone3, Norm, NormKind, Op, Real};
 
 /// How set operations combine values. All rules give the same solid; they differ in the
 /// field around and inside it.
@@ -282,9 +283,6 @@ pub(super) struct RoundedAnd(pub f64);
 #[derive(Clone, Copy)]
 pub(super) struct ChamferedAnd(pub f64);
 
-/// A denominator is held above this.
-const TINY: f64 = 1e-37;
-
 impl Monotone for AlphaAnd {
     #[inline(always)]
     fn value<R: Real>(&self, x: R, y: R) -> R {
@@ -448,54 +446,6 @@ fn alpha_and<R: Real>(x: R, y: R, alpha: f64) -> (R, R) {
     let zero = x.lift(0.0);
     let product = xy * 2.0 / (s.abs() + d).max(x.lift(TINY));
     (s.min(zero) * (2.0 / (1.0 + alpha)) + product, d)
-}
-
-/// A norm of which it is known how much it is above the larger coordinate.
-pub(super) trait ExcessKind: NormKind {
-    /// `‖(x, y)‖ − max(|x|, |y|)`, to full relative precision.
-    fn excess<R: Real>(self, x: R, y: R) -> R;
-}
-
-impl ExcessKind for Euclid {
-    #[inline(always)]
-    fn excess<R: Real>(self, x: R, y: R) -> R {
-        let (a, b) = (x.abs(), y.abs());
-        let (hi, lo) = (a.max(b), a.min(b));
-        let length = hi.mul_add(hi, lo.square()).sqrt();
-        lo * (lo / (hi + length).max(x.lift(TINY)))
-    }
-}
-
-impl<const STEEP: bool> ExcessKind for Powers<STEEP> {
-    #[inline(always)]
-    fn excess<R: Real>(self, x: R, y: R) -> R {
-        let (a, b) = (x.abs(), y.abs());
-        let (hi, lo) = (a.max(b), a.min(b));
-        let Powers { p, inv } = self;
-        let u = (lo / hi.max(x.lift(TINY))).pow(p);
-        // (1 + u)^(1/p) − 1: the binomial series where u is small.
-        const TERMS: u32 = 8;
-        let mut series = x.lift(0.0);
-        for k in (1..=TERMS).rev() {
-            let k = f64::from(k);
-            // s_k = u·(1/p − k + 1)/k·(1 + s_{k+1})
-            series = (series + 1.0) * u * ((inv - k + 1.0) / k);
-        }
-        let direct = ((u + 1.0).log2() * inv).exp2() - 1.0;
-        hi * (u - 1.0 / 64.0).select(direct, series)
-    }
-}
-
-impl ExcessKind for Norm {
-    #[inline(always)]
-    fn excess<R: Real>(self, x: R, y: R) -> R {
-        match self {
-            Norm::Sum => x.abs().min(y.abs()),
-            Norm::Max => x.lift(0.0),
-            Norm::Euclid => Euclid.excess(x, y),
-            Norm::P { p, inv } | Norm::Steep { p, inv } => Powers::<true> { p, inv }.excess(x, y),
-        }
-    }
 }
 
 /// R_0^m conjunction: that of R_p with p = 2, times a power of the norm that flattens the

@@ -93,11 +93,11 @@ impl Solid {
     /// both surfaces are alike over large parts and close, or where one of them was not found that
     /// exactly: then it says how much.
     ///
-    /// Closed meshes whose triangles do not cross, and polygons that are extruded straight, wherever
-    /// they were moved to, are their triangles: nothing is measured of them, and the tolerance is a
-    /// thousandth of the distance and what single precision leaves open, some 10⁻⁶ of the sizes.
-    /// Where they touch or overlap it is 2·10⁻⁴ of the sizes: what goes no deeper than half of that
-    /// touches.
+    /// Closed meshes whose triangles do not cross, and polygons that are extruded straight,
+    /// wherever they were moved to, are their triangles: nothing is measured of them, and the
+    /// tolerance is a thousandth of the distance and what single precision leaves open, some 10⁻⁶
+    /// of the sizes. Where they touch or overlap it is 2·10⁻⁴ of the sizes: what goes no deeper
+    /// than half of that touches.
     ///
     /// That no points are nearer is told of the surface of one of the solids, as it was measured,
     /// and of the other solid itself if its value changes by no more than lengths do, as that of
@@ -115,8 +115,8 @@ impl Solid {
     /// solid at rest, so that parts of an assembly are not measured anew in each position. After
     /// that a clearance takes milliseconds where one place is nearest and of meshes and extruded
     /// polygons, some tenths of a second where a gap is even all over and where meshes touch over
-    /// thousands of triangles or overlap, and seconds between threads and the like. The volume of an
-    /// overlap is found as by [`measure`](Solid::measure).
+    /// thousands of triangles or overlap, and seconds between threads and the like. The volume of
+    /// an overlap is found as by [`measure`](Solid::measure).
     ///
     /// # Errors
     /// What is wrong with a solid, that it has no finite box, that it is so thin that nothing of

@@ -70,8 +70,8 @@ impl Slice {
     /// Nothing that is wider than the tolerance is missed, and what is narrower is told
     /// ([`Contours::unresolved`]). Where slopes have no bound (lengths as offsets, shells and
     /// fillets; displacement and Ricci's blend; leaves at their pinched points; some users' fields)
-    /// nothing is missed that is wider than a 256th of the region, as far as the surface that lengths
-    /// are measured from shows it.
+    /// nothing is missed that is wider than a 256th of the region, as far as the surface that
+    /// lengths are measured from shows it.
     ///
     /// # Errors
     /// If the tolerance is not above 0.

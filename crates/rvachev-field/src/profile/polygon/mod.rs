@@ -52,12 +52,12 @@ use tree::Tree;
 /// Contours may touch themselves and one another, at corners or along edges: what two of them have
 /// in common is no border, as between two squares side by side, or on the two ways of a bridge that
 /// leads to a hole. Corners are one that are nearer to each other than 2·10⁻¹² of the size of the
-/// whole (and rounding, far from the origin), and an edge that passes a corner so near leads through
-/// it: so much may be rounded where a drawing is turned or written. Edges do not cross; coordinates
-/// are within ±10⁹ and edges at least 10⁻⁹ long.
-/// What is wrong is found by exact arithmetic and said when the profile is compiled: with the
-/// contour, the edge and the point. Until then nothing is computed; n edges take some n log n
-/// steps, and one more for each pair that lies on one another.
+/// whole (and rounding, far from the origin), and an edge that passes a corner so near leads
+/// through it: so much may be rounded where a drawing is turned or written. Edges do not cross;
+/// coordinates are within ±10⁹ and edges at least 10⁻⁹ long. What is wrong is found by exact
+/// arithmetic and said when the profile is compiled: with the contour, the edge and the point.
+/// Until then nothing is computed; n edges take some n log n steps, and one more for each pair that
+/// lies on one another.
 ///
 /// ```
 /// use rvachev::{Polygon, Profile};

@@ -6,11 +6,11 @@
 //!        |/                   |             one; an edge that passes a corner so near leads through it.
 //! ```
 //!
-//! What is moved is moved by no more than the rounding at a time, and nothing is moved where nothing
-//! is so near. Then all is exact again: see [`sweep`](super::sweep).
+//! What is moved is moved by no more than the rounding at a time, and nothing is moved where
+//! nothing is so near. Then all is exact again: see [`sweep`](super::sweep).
 //!
-//! Source: J. D. Hobby, *Practical segment intersection with finite precision output* (1999), without
-//! a grid.
+//! Source: J. D. Hobby, *Practical segment intersection with finite precision output* (1999),
+//! without a grid.
 
 use glam::DVec2;
 use rvachev_num::{Cancelled, Run};

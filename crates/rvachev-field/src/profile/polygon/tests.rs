@@ -420,8 +420,8 @@ fn values_of_combs_and_fans_look_at_few_edges() {
     }
 }
 
-/// Squares side by side, one half as high as the other, a hole in each that touches a side, all of it
-/// turned, far away or not, and with corners that are off by a part of the size.
+/// Squares side by side, one half as high as the other, a hole in each that touches a side, all of
+/// it turned, far away or not, and with corners that are off by a part of the size.
 fn drawn(numbers: &mut Numbers, turn: f64, at: DVec2, off: f64) -> Vec<Vec<DVec2>> {
     let drawing: [&[[f64; 2]]; 4] = [
         &[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [4.0, 4.0], [0.0, 4.0], [0.0, 3.0], [0.0, 0.0]],
@@ -454,7 +454,8 @@ fn what_rounding_parts_is_joined() {
             let turn = turn + 0.1 * f64::from(round);
             let polygon = Polygon::of_points(&contours);
             let found = (polygon.check(), polygon.edge_count());
-            // Without the side in common, and that of the hole; with the parts of sides beside them.
+            // Without the side in common, and that of the hole; with the parts of sides beside
+            // them.
             assert_eq!(found, (Ok(()), 17), "{turn} {at} {off}");
             let slack = 1e-11 + 1e-14 * at.length();
             assert!((polygon.area() - 18.5).abs() < 10.0 * slack, "{turn} {at} {off}: {}", polygon.area());

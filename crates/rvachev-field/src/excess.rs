@@ -1,0 +1,63 @@
+//! How much a norm is above the larger coordinate, to full relative precision.
+//!
+//! ```text
+//!     ‖(x, y)‖ − M,   M = max(|x|, |y|),  m = min(|x|, |y|),  u = (m / M)^p
+//!     p = 2:          m · m / (M + ‖(x, y)‖)
+//!     any p:          M · ((1 + u)^(1/p) − 1), by the binomial series where u is small
+//! ```
+//!
+//! The conjunction R_p is x + y − ‖(x, y)‖: near an edge the difference of two numbers that are all
+//! but equal, which this is the small part of.
+
+use crate::{Euclid, Norm, NormKind, Powers, Real};
+
+/// A denominator is held above this.
+pub(super) const TINY: f64 = 1e-37;
+
+/// A norm of which it is known how much it is above the larger coordinate.
+pub(super) trait ExcessKind: NormKind {
+    /// `‖(x, y)‖ − max(|x|, |y|)`, to full relative precision.
+    fn excess<R: Real>(self, x: R, y: R) -> R;
+}
+
+impl ExcessKind for Euclid {
+    #[inline(always)]
+    fn excess<R: Real>(self, x: R, y: R) -> R {
+        let (a, b) = (x.abs(), y.abs());
+        let (hi, lo) = (a.max(b), a.min(b));
+        let length = hi.mul_add(hi, lo.square()).sqrt();
+        lo * (lo / (hi + length).max(x.lift(TINY)))
+    }
+}
+
+impl<const STEEP: bool> ExcessKind for Powers<STEEP> {
+    #[inline(always)]
+    fn excess<R: Real>(self, x: R, y: R) -> R {
+        let (a, b) = (x.abs(), y.abs());
+        let (hi, lo) = (a.max(b), a.min(b));
+        let Powers { p, inv } = self;
+        let u = (lo / hi.max(x.lift(TINY))).pow(p);
+        // (1 + u)^(1/p) − 1: the binomial series where u is small.
+        const TERMS: u32 = 8;
+        let mut series = x.lift(0.0);
+        for k in (1..=TERMS).rev() {
+            let k = f64::from(k);
+            // s_k = u·(1/p − k + 1)/k·(1 + s_{k+1})
+            series = (series + 1.0) * u * ((inv - k + 1.0) / k);
+        }
+        let direct = ((u + 1.0).log2() * inv).exp2() - 1.0;
+        hi * (u - 1.0 / 64.0).select(direct, series)
+    }
+}
+
+impl ExcessKind for Norm {
+    #[inline(always)]
+    fn excess<R: Real>(self, x: R, y: R) -> R {
+        match self {
+            Norm::Sum => x.abs().min(y.abs()),
+            Norm::Max => x.lift(0.0),
+            Norm::Euclid => Euclid.excess(x, y),
+            Norm::P { p, inv } | Norm::Steep { p, inv } => Powers::<true> { p, inv }.excess(x, y),
+        }
+    }
+}
