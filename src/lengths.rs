@@ -273,12 +273,11 @@
 //! more finely than to a millionth of the solid's size, or of how far the solid reaches from the
 //! origin. Equal solids share their surfaces. Along creases that are curved,
 //! where curvature jumps, and where ribs come to be as thin as cells, single points may be farther
-//! off. Rods, needles and rims thinner than a quarter of a cell may be missed.
-//! [`Solid::accuracy`](crate::Solid::accuracy) says what was reached, and
-//! [`Solid::with_tolerance`](crate::Solid::with_tolerance) asks for more or less. It does not tell
-//! of holes that are missed because they are thinner than a cell and beside an edge, as those of
-//! .1 through a plate of 20: they are better taken away after the length is. The tolerances of
-//! lengths of lengths, as of fillets of several radii one after the other, add up.
+//! off. [`Solid::accuracy`](crate::Solid::accuracy) says what was reached, and
+//! [`Solid::with_tolerance`](crate::Solid::with_tolerance) asks for more or less. Rods, holes and
+//! ribs that are convex leaves are found however thin they are, or told of by it; of other leaves,
+//! as a thin torus or a swept profile, what is thinner than a quarter of a cell may be missed. The
+//! tolerances of lengths of lengths, as of fillets of several radii one after the other, add up.
 //!
 //! Faces that a length leaves where they are are not measured: the outer face of a shell, the faces
 //! that the ball of an opening or closing touches, flush faces of a blend. They are the solid's

@@ -16,10 +16,10 @@ use super::compiled_with;
 use super::facets::{Facets, sharp};
 use super::quilt::{Care, GROSS, MOST, Quilt, Spot, often};
 use crate::eval::{Region, as_leaf};
-use crate::mesh::Slopes;
+use crate::mesh::{Slender, Slopes};
 use crate::solid::Node;
 use crate::{Bounds, Cancelled, Mesh, RFunction, Run, Solid};
-use rvachev_field::Patches;
+use rvachev_field::{Patch, Patches};
 
 /// So many boxes are meshed, those of the farthest spots, and boxes in these.
 const BOXES: usize = 512;
@@ -109,6 +109,51 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
     }
     quilt.take_spots(spots.into_iter().zip(left).filter_map(|(spot, left)| left.then_some(spot)).collect());
     Ok(())
+}
+
+/// Meshes what a quilt lacks about points of the surface, given how thick it is there. Gives whether
+/// it is all there now.
+pub(super) fn add(
+    quilt: &mut Quilt,
+    slopes: &Slopes<'_>,
+    lacking: &[Slender],
+    tolerance: f64,
+    run: &Run,
+) -> Result<bool, Cancelled> {
+    // Cells of half the thickness show what is so thick.
+    let side = |slender: &Slender| 0.5 * CELLS * slender.thickness;
+    let mut boxes: BTreeMap<([i64; 3], u64), Vec<Spot>> = BTreeMap::new();
+    for (number, slender) in lacking.iter().enumerate() {
+        often(number, run)?;
+        let place = (slender.at / side(slender)).to_array().map(|at| at.floor() as i64);
+        let spot = Spot { patch: Patch::flat([slender.at; 3]), off: 0.5 * slender.thickness };
+        boxes.entry((place, side(slender).to_bits())).or_default().push(spot);
+        if boxes.len() > BOXES || !slender.is_close {
+            return Ok(false);
+        }
+    }
+    let most = MOST.saturating_sub(quilt.len()) / SHARE;
+    let made = |((place, side), spots): &(([i64; 3], u64), Vec<Spot>)| {
+        run.check()?;
+        let side = f64::from_bits(*side);
+        let min = side * DVec3::from_array(place.map(|at| at as f64));
+        let bounds = Bounds::new(min, min + side).inflate(MARGIN * side);
+        let care = Care { depth: SPLITS, most, ..Care::new(tolerance) };
+        let Some(mut part) = anew(slopes, &bounds, care, run)? else { return Ok(None) };
+        let size = bounds.longest_side() / CELLS;
+        mend_of(Cells { size, depth: DEEPEST, most }, &mut part, slopes, tolerance, run)?;
+        let own: Vec<&Spot> = spots.iter().collect();
+        Ok(covers(&part, &own, slopes, NEAR * size, run)?.then_some(part))
+    };
+    let mut is_all = true;
+    let boxes: Vec<_> = boxes.into_iter().collect();
+    for boxes in boxes.chunks(AT_ONCE) {
+        for part in boxes.par_iter().map(made).collect::<Result<Vec<Option<Quilt>>, Cancelled>>()? {
+            is_all &= part.is_some();
+            part.into_iter().for_each(|part| quilt.take_all(part));
+        }
+    }
+    Ok(is_all)
 }
 
 /// A box, and the numbers of the spots that it is about.

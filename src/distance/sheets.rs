@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::column::{Crossings, Line};
 use super::quilt::Quilt;
+use super::surface::KNOWN;
 use crate::eval::Region;
 use crate::mesh::{Hidden, Slopes, Subject};
 use crate::{Bounds, Cancelled, Run};
@@ -39,9 +40,6 @@ const RIM: f64 = 0.2;
 
 /// What is nearer together than this part of the tolerance is one sheet.
 const ONE: f64 = 0.5;
-
-/// What is found within so many tolerances of known patches is known.
-const KNOWN: f64 = 3.0;
 
 /// A triangle and how far it is off.
 type Found = (Patch, f64);

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::compiled_with;
 use super::facets::{Facets, sharp};
-use super::mend::mend;
+use super::mend::{add, mend};
 use super::outline::border;
 use super::quilt::{Care, GROSS, Quilt};
 use super::sheets::cover;
@@ -48,6 +48,9 @@ const FEW: f64 = 1e-4;
 
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;
+
+/// What is found within so many tolerances of known patches is known.
+pub(super) const KNOWN: f64 = 3.0;
 
 /// The part of the work that finding the size of cells is.
 const LOOKING: f64 = 0.05;
@@ -109,6 +112,7 @@ impl DistanceSource for FromMeshes {
             let end = done + ATTEMPT * (1.0 - done);
             let [to_mesh, to_sew] = run.stage(done, end).stages([0.5, 0.5]);
             done = end;
+            let mut seen = bounds;
             let (facets, mut hidden) = match flat {
                 None if bounds.contains_bounds(&whole) => {
                     let Shown { mesh, hidden } = shown(&programs.surface, bounds, cell, &to_mesh)?;
@@ -116,9 +120,8 @@ impl DistanceSource for FromMeshes {
                 }
                 None => part((solid, &slopes), bounds, [whole, near], cell, &to_mesh)?,
                 Some(axis) => {
-                    let mut wall = bounds;
-                    (wall.min[axis], wall.max[axis]) = (-1.5 * cell, 1.5 * cell);
-                    part((solid, &slopes), wall, [whole, near], cell, &to_mesh)?
+                    (seen.min[axis], seen.max[axis]) = (-1.5 * cell, 1.5 * cell);
+                    part((solid, &slopes), seen, [whole, near], cell, &to_mesh)?
                 }
             };
             hidden.retain(|hidden| hidden.cell.intersects(&near));
@@ -161,7 +164,12 @@ impl DistanceSource for FromMeshes {
                     }
                 }
             }
-            if let Some((reached, quilt)) = best.take_if(|_| is_last || is_enough) {
+            if let Some((reached, mut quilt)) = best.take_if(|_| is_last || is_enough) {
+                let own = Subject { bounds: seen, ..subject };
+                let missed = found_by_leaves(&mut quilt, (&own, &near), &slopes, (cell, tolerance), run)?;
+                if !missed.is_empty() {
+                    quilt.miss(missed, cell);
+                }
                 let patches = Arc::new(Patches::new(&quilt.patches, &run.stage(done, 1.0))?);
                 run.report(1.0);
                 let accuracy = Accuracy::of_surface(reached, quilt.error);
@@ -186,6 +194,28 @@ impl DistanceSource for FromMeshes {
         };
         least.max(programs.accuracy.grain())
     }
+}
+
+/// Adds to a quilt what it lacks about leaves that may pass between the nodes of cells. Gives boxes
+/// about what it still lacks, and does not tell of.
+fn found_by_leaves(
+    quilt: &mut Quilt,
+    (subject, near): (&Subject<'_>, &Bounds),
+    slopes: &Slopes<'_>,
+    (cell, tolerance): (f64, f64),
+    run: &Run,
+) -> Result<Vec<Bounds>, CompileError> {
+    let alone = Run { progress: None, ..run.clone() };
+    let known = Patches::new(&quilt.patches, &alone)?;
+    let is_near = |p: DVec3, by: f64| known.nearest(p).is_some_and(|foot| foot.distance <= by);
+    let is_lacking = |p: DVec3| near.contains(p) && !is_near(p, KNOWN * tolerance);
+    let lacking = run.install(|| subject.slender(cell, &is_lacking, &alone)).map_err(compile_error)?;
+    if add(quilt, slopes, &lacking, tolerance, &alone)? {
+        return Ok(Vec::new());
+    }
+    // What patches are told to be off tells of these as well.
+    let untold = lacking.iter().filter(|own| !is_near(own.at, quilt.error));
+    Ok(untold.map(|own| Bounds::from_center(own.at, DVec3::splat(cell))).collect())
 }
 
 /// The size of a solid, or how far it reaches from the origin, along axes that it ends along.

@@ -3,7 +3,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::program::{Kind, Node, Program};
+use super::program::{Edge, Kind, Node, Program};
 use super::scene::Instance;
 use crate::Bounds;
 use rvachev_field::Rule;
@@ -60,11 +60,7 @@ impl Program {
     /// Which leaves of the solid, by their numbers, are convex and thinner than this, in length
     /// units: holes and rods of that size may pass between samples without a change of sign.
     pub(crate) fn thin_leaves(&self, thickness: f64) -> Vec<bool> {
-        let is_thin = |leaf: &Instance| {
-            let size = leaf.field.bounds_under(&DAffine3::IDENTITY).size().min_element();
-            leaf.field.convex() && leaf.placement.scale * size + 2.0 * leaf.placement.shift < thickness
-        };
-        self.scene.leaves.iter().map(is_thin).collect()
+        self.scene.leaves.iter().map(|leaf| leaf.field.convex() && thickness_of(leaf) < thickness).collect()
     }
 
     /// Whether a leaf is flat between creases, however blunt these are: one that is not bent.
@@ -106,13 +102,51 @@ impl Program {
 
     /// Whether a region may hold one of these leaves of the solid.
     pub(crate) fn has_leaf_of(&self, leaves: &[bool], region: &Bounds) -> bool {
-        self.nodes.iter().filter_map(Node::valued_by).any(|leaf| {
-            let leaf = self.instance(leaf);
+        self.those_of(leaves, region).next().is_some()
+    }
+
+    /// Those of these leaves that a region may hold, each as a program by itself.
+    pub(crate) fn slender_in(&self, leaves: &[bool], region: &Bounds) -> Vec<SlenderLeaf> {
+        let alone = |leaf| {
+            let nodes = vec![Node::leaf(leaf)];
+            let program = Program::assemble(self.scene.clone(), nodes, Vec::new(), Edge::new(0), self.simpler.to_vec());
+            let own = self.instance(leaf);
+            // Frames bend what is straight in its own coordinates.
+            let (within, to_world) = if own.frame == 0 {
+                let whole = own.field.bounds_under(&DAffine3::IDENTITY);
+                let shift = own.placement.shift.max(0.0) / own.placement.scale;
+                (whole.inflate(shift).intersection(&region.transformed(&own.to_local)), own.to_local.inverse())
+            } else {
+                (*region, DAffine3::IDENTITY)
+            };
+            SlenderLeaf { program, within, to_world, thickness: thickness_of(own) }
+        };
+        self.those_of(leaves, region).map(alone).collect()
+    }
+
+    fn those_of<'a>(&'a self, leaves: &'a [bool], region: &'a Bounds) -> impl Iterator<Item = u32> + 'a {
+        self.nodes.iter().filter_map(Node::valued_by).filter(|leaf| {
+            let leaf = self.instance(*leaf);
             let is_one = leaves.get(leaf.number as usize) == Some(&true);
             // Boxes in frames are not those of the world.
             is_one && (leaf.frame != 0 || !leaf.bounds.intersection(region).is_empty())
         })
     }
+}
+
+/// A leaf by itself: the box that it is in, as far as that is near a region, with the map from
+/// there to the world; and how thick it is.
+pub(crate) struct SlenderLeaf {
+    pub(crate) program: Program,
+    pub(crate) within: Bounds,
+    pub(crate) to_world: DAffine3,
+    pub(crate) thickness: f64,
+}
+
+/// The least side of a leaf's box, as it is placed.
+fn thickness_of(leaf: &Instance) -> f64 {
+    let size = leaf.field.bounds_under(&DAffine3::IDENTITY).size().min_element();
+    leaf.placement.scale * size + 2.0 * leaf.placement.shift
 }
 
 #[cfg(test)]

@@ -25,6 +25,7 @@ mod settings;
 mod shown;
 mod signs;
 mod simplify;
+mod slender;
 mod slopes;
 mod subject;
 mod table;
@@ -41,6 +42,7 @@ pub use volume::{Volume, VolumeError, VolumeSettings};
 
 pub(crate) use paint::{corner_colors, each_triangle};
 pub(crate) use shown::Hidden;
+pub(crate) use slender::Slender;
 pub(crate) use slopes::{Slope, Slopes};
 pub(crate) use subject::{Subject, Whole};
 pub(crate) use thin::thin_features_of;

@@ -148,18 +148,25 @@ impl Subject<'_> {
         nodes(&cell.inflate(cell.longest_side()), 3).all(|p| (self.program.value(p) > 0.0) == is_inside)
     }
 
-    /// Whether steps along the gradient lead from the middle of a cell to the surface in it, and to
-    /// its other side: where parts meet face to face values are 0, and inside on both sides.
+    /// Whether steps along the gradient lead from the middle of a cell to the surface in it.
     fn is_crossed(&self, cell: &Bounds) -> bool {
+        let step = cell.longest_side();
+        self.foot(cell.center(), step).is_some_and(|foot| cell.inflate(0.01 * step).contains(foot))
+    }
+
+    /// The point of the surface that steps along the gradient lead to, if they do, and beyond it to
+    /// the other side within a tenth of `step`: where parts meet face to face values are 0, and
+    /// inside on both sides.
+    pub(super) fn foot(&self, from: DVec3, step: f64) -> Option<DVec3> {
         const STEPS: usize = 3;
-        let (step, size) = (cell.longest_side(), self.bounds.longest_side());
-        let is_inside = self.program.value(cell.center()) > 0.0;
-        let (mut p, mut way) = (cell.center(), DVec3::ZERO);
+        let size = self.bounds.longest_side();
+        let is_inside = self.program.value(from) > 0.0;
+        let (mut p, mut way) = (from, DVec3::ZERO);
         for _ in 0..STEPS {
             let (value, slope) = self.program.gradient(p);
             let on = value / slope.length_squared() * slope;
             if !on.is_finite() {
-                return false;
+                return None;
             }
             way = if is_inside { -slope } else { slope }.normalize_or_zero();
             p -= on;
@@ -168,10 +175,9 @@ impl Subject<'_> {
             let value = self.program.value(p + part * step * way);
             value.abs() > ROUNDING * size && (value > 0.0) != is_inside
         };
-        let near = self.program.value(p).abs() < 0.01 * step && cell.inflate(0.01 * step).contains(p);
         // One of the tenths of tenths is within what is thicker than rounding errors.
         let mut parts = (2..).map(|tenths| 0.1_f64.powi(tenths)).take_while(|part| part * step > ROUNDING * size);
-        near && parts.any(is_beyond)
+        (self.program.value(p).abs() < 0.01 * step && parts.any(is_beyond)).then_some(p)
     }
 
     /// Whether a cell with all its nodes on one side has something of the other.

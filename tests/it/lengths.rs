@@ -685,6 +685,24 @@ fn rods_thinner_than_cells_are_found_or_told() -> Outcome {
     Ok(())
 }
 
+/// Holes thinner than cells beside an edge, of which cells show the edge alone; straight and turned.
+#[test]
+fn holes_thinner_than_cells_are_found_or_told() -> Outcome {
+    let mut random = Random::new(34);
+    for (n, radius) in [0.001, 0.02, 0.04, 0.056].into_iter().enumerate() {
+        let turn = DQuat::from_axis_angle(random.direction(), f64::from(n as u32));
+        let at_edge = DVec3::new(9.9 - radius - 0.2 * random.unit(), 12.0 * random.unit() - 6.0, 0.0);
+        let plate = Solid::cuboid([20.0, 16.0, 2.0]) - at(Solid::cylinder(radius, 4.0), at_edge.to_array());
+        let moved = plate.rotate(turn).offset(0.05);
+        let off = (moved.value(turn * at_edge)? - (0.05 - radius)).abs();
+        let accuracy = moved.accuracy()?;
+        println!("{radius}: off {off}, {accuracy:?}");
+        assert!(off <= accuracy.error + accuracy.tolerance, "{radius} at {at_edge}: off {off}, {accuracy:?}");
+        assert!(radius < 0.01 || off < 1e-3, "{radius} at {at_edge}: off {off}, {accuracy:?}");
+    }
+    Ok(())
+}
+
 /// Gaps and fins that no cell shows.
 #[test]
 fn what_is_thinner_than_any_cell_is_measured() -> Outcome {
