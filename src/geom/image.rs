@@ -224,14 +224,14 @@ impl Image<f64> {
     }
 
     /// As 8-bit grey: what is `white` or less is white, `black` or more is nearly black, and
-    /// what is not finite is black.
+    /// what is not finite is black, as is all if `white` or `black` is NaN.
     #[must_use]
     pub fn to_grey8(&self, white: f64, black: f64) -> Image<u8> {
         self.map(|v| grey(*v, white, black, f64::from(u8::MAX)) as u8)
     }
 
     /// As 16-bit grey: what is `white` or less is white, `black` or more is nearly black, and
-    /// what is not finite is black.
+    /// what is not finite is black, as is all if `white` or `black` is NaN.
     #[must_use]
     pub fn to_grey16(&self, white: f64, black: f64) -> Image<u16> {
         self.map(|v| grey(*v, white, black, f64::from(u16::MAX)) as u16)
@@ -301,5 +301,7 @@ mod tests {
         assert_eq!(depth.range(), Some((2.0, 4.0)));
         assert_eq!(depth.to_grey8(2.0, 4.0).pixels(), [255, 25, 0, 140]);
         assert_eq!(depth.to_grey16(2.0, 2.0).pixels()[0], 65535);
+        assert_eq!(depth.to_grey8(f64::NAN, 4.0).pixels(), [0; 4]);
+        assert_eq!(depth.to_grey16(2.0, f64::NAN).pixels(), [0; 4]);
     }
 }

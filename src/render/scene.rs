@@ -191,7 +191,8 @@ impl Scene {
     }
 
     /// The first crossing on the ray from `origin` along `direction`, which must be a unit
-    /// vector. From inside the solid it is where the ray leaves it.
+    /// vector. From inside the solid it is where the ray leaves it. A ray with NaN in it hits
+    /// nothing; [`Solid::raycast`](crate::Solid::raycast) says so.
     #[must_use]
     pub fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let mut found = [Surface::NONE];
