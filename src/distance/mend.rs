@@ -20,6 +20,7 @@ use crate::mesh::{Slender, Slopes};
 use crate::solid::Node;
 use crate::{Bounds, Cancelled, Mesh, RFunction, Run, Solid};
 use rvachev_field::{Patch, Patches};
+use rvachev_num::InOrder;
 
 /// So many boxes are meshed, those of the farthest spots, and boxes in these.
 const BOXES: usize = 512;
@@ -97,7 +98,7 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
     for groups in groups.chunks(AT_ONCE) {
         let most = most.saturating_sub(quilt.len() + spots.len()) / SHARE;
         let found = groups.par_iter().map(|group| mended(group, most));
-        for ((_, numbers), part) in groups.iter().zip(found.collect::<Result<Vec<Option<Quilt>>, Cancelled>>()?) {
+        for ((_, numbers), part) in groups.iter().zip(found.try_in_order()?) {
             match part {
                 Some(part) if part.error < worst(numbers) => {
                     numbers.iter().for_each(|n| left[*n] = false);
@@ -148,7 +149,7 @@ pub(super) fn add(
     let mut is_all = true;
     let boxes: Vec<_> = boxes.into_iter().collect();
     for boxes in boxes.chunks(AT_ONCE) {
-        for part in boxes.par_iter().map(made).collect::<Result<Vec<Option<Quilt>>, Cancelled>>()? {
+        for part in boxes.par_iter().map(made).try_in_order()? {
             is_all &= part.is_some();
             part.into_iter().for_each(|part| quilt.take_all(part));
         }

@@ -15,6 +15,7 @@ use super::samples::Samples;
 use crate::geom::PointCloud;
 use crate::{Cancelled, Field, ParamError, Run, SolidError};
 use rvachev_field::check::LARGEST_LENGTH;
+use rvachev_num::InOrder;
 
 /// If a smaller share of the points is of the solid, it is not what they are of.
 const FEWEST: f64 = 0.05;
@@ -51,7 +52,7 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
     let chunks: Vec<Vec<(f32, f64)>> = if scaled.is_whole {
         vec![chances.iter().zip(&off).map(|(p, d)| (*p as f32, *d)).collect()]
     } else {
-        run.install(|| all.par_chunks(CHUNK).map(weighed).collect::<Result<_, _>>())?
+        run.install(|| all.par_chunks(CHUNK).map(weighed).try_in_order())?
     };
     let weights: Vec<f32> = chunks.iter().flatten().map(|w| w.0).collect();
     let inliers = weights.iter().map(|w| f64::from(*w)).sum::<f64>() / weights.len() as f64;

@@ -28,6 +28,7 @@ use crate::distance::compiled_with;
 use crate::eval::Program;
 use crate::geom::PointCloud;
 use crate::{Cancelled, CellSize, MeshSettings, Run, Solid};
+use rvachev_num::InOrder;
 
 const NAMES: [&str; PARAMETERS] = ["turn x", "turn y", "turn z", "shift x", "shift y", "shift z", "ln scale"];
 
@@ -274,7 +275,7 @@ impl Model<'_> {
                     let pose = align.descend(*start, self.widths(width, steps), run)?;
                     Ok((align.cost(pose, run)?, pose))
                 })
-                .collect::<Result<Vec<(f64, Pose)>, Cancelled>>()?;
+                .try_in_order()?;
             found.sort_by(|a, b| a.0.total_cmp(&b.0));
             found.truncate(KEPT.get(round).copied().unwrap_or(1));
             poses = found.into_iter().map(|(_, pose)| pose).collect();

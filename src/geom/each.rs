@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use rvachev_num::Meter;
 
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// What `answer` says of each number below `count`, in their order, on the threads of the caller;
 /// a thread tells how far it is after `chunk` answers. One may take milliseconds: the run is asked
@@ -24,5 +25,5 @@ pub(crate) fn each<R: Send>(
         Ok(answers)
     };
     let all = (0..count.div_ceil(chunk)).into_par_iter().map(answers_of);
-    Ok(all.collect::<Result<Vec<Vec<R>>, Cancelled>>()?.into_iter().flatten().collect())
+    Ok(all.try_in_order()?.into_iter().flatten().collect())
 }

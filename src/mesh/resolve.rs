@@ -19,6 +19,7 @@ use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
 use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Interval, Run};
+use rvachev_num::InOrder;
 use rvachev_num::Meter;
 
 /// The cells of a block that the surface may come into and turn round in.
@@ -67,7 +68,7 @@ pub(super) fn unresolved_cells(
         Ok(Some(Unresolved { block, cells }).filter(|found| !found.cells.is_empty()))
     };
     let found = blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block);
-    found.filter_map(Result::transpose).collect()
+    Ok(found.try_in_order()?.into_iter().flatten().collect())
 }
 
 /// A block in which cells are sought.

@@ -17,6 +17,7 @@ use super::subject::Subject;
 use crate::eval::Program;
 use crate::geom::{Findings, Mesh};
 use crate::{Bounds, Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// Cells of a block that the surface is in, as a rule.
 const OF_BLOCK: usize = 110;
@@ -139,7 +140,7 @@ impl Subject<'_> {
             Ok(found)
         };
         let found = blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block);
-        Ok(found.collect::<Result<Vec<Vec<Hidden>>, Cancelled>>()?.concat())
+        Ok(found.try_in_order()?.concat())
     }
 
     /// Whether all nodes of a cell and of those about it are on one side.

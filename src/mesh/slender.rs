@@ -16,6 +16,7 @@ use super::signs::BLOCK;
 use super::subject::Subject;
 use crate::eval::SlenderLeaf;
 use crate::{Bounds, Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// What is thinner than this may pass between nodes, in cells: their diagonal.
 const PASSES: f64 = 1.74;
@@ -66,7 +67,8 @@ impl Subject<'_> {
             let found = leaves.iter().flat_map(|leaf| own.on_leaf(leaf, &region, cell));
             Ok(found.filter(|own| is_asked_for(own.at)).collect())
         };
-        let found: Result<Vec<Vec<Slender>>, Cancelled> = blocks.cells.par_iter().enumerate().map(of_block).collect();
+        let found: Result<Vec<Vec<Slender>>, Cancelled> =
+            blocks.cells.par_iter().enumerate().map(of_block).try_in_order();
         Ok(found?.concat())
     }
 

@@ -22,6 +22,7 @@ use super::resolve::{Among, Unresolved, unresolved_cells};
 use crate::eval::Program;
 use crate::geom::{ThinPlace, ThinReport};
 use crate::{Bounds, Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// Cells of a place that its thickness is sought in.
 const ASKED: usize = 8;
@@ -83,7 +84,7 @@ pub(super) fn thin_report(
         };
         Ok(found.cells.iter().filter_map(thin).collect::<Vec<_>>())
     };
-    let cells: Result<Vec<Vec<Thin<'_>>>, Cancelled> = all.par_iter().map(of_block).collect();
+    let cells: Result<Vec<Vec<Thin<'_>>>, Cancelled> = all.par_iter().map(of_block).try_in_order();
     let cells: Vec<Thin<'_>> = cells?.into_iter().flatten().collect();
     let mut places = grouped(&cells, run)?;
     // The surface turns round in the cell of a sharp corner, too.
@@ -96,7 +97,7 @@ pub(super) fn thin_report(
         to_measure.check()?;
         Ok(measured(place.iter().map(|&n| &cells[n]).collect(), lattice))
     };
-    let listed: Result<Vec<ThinPlace>, Cancelled> = listed.par_iter().map(measured).collect();
+    let listed: Result<Vec<ThinPlace>, Cancelled> = listed.par_iter().map(measured).try_in_order();
     run.report(1.0);
     Ok(ThinReport { cell: lattice.step(), cells: count, count: places.len(), places: listed? })
 }

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::error::RasterError;
 use crate::{Cancelled, Mesh, Run};
+use rvachev_num::InOrder;
 
 /// A mesh whose surface is closed and faces outward, as every join of layers needs it.
 ///
@@ -55,7 +56,8 @@ impl<'a> ClosedMesh<'a> {
         let [to_look, to_weld, to_compare] = run.stages([0.4, 0.3, 0.3]);
         if !uneven_edges(mesh.triangles(), &to_look)?.is_empty() {
             let welded = by_position(mesh, &to_weld)?;
-            let triangles: Vec<[u32; 3]> = mesh.triangles().par_iter().map(|t| t.map(|i| welded[i as usize])).collect();
+            let triangles: Vec<[u32; 3]> =
+                mesh.triangles().par_iter().map(|t| t.map(|i| welded[i as usize])).in_order();
             let uneven = uneven_edges(&triangles, &to_compare)?;
             if let Some(&first) = uneven.first() {
                 let at = mesh.positions()[first as usize].as_dvec3();

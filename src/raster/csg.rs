@@ -12,6 +12,7 @@ use super::stencil::Passes;
 use super::target::Target;
 use super::view::RasterView;
 use crate::Run;
+use rvachev_num::InOrder;
 use rvachev_num::Meter;
 
 /// How the depth buffer of a tree is found.
@@ -165,9 +166,9 @@ impl RasterView {
                     meter.check()?;
                     let target = plan.tile(operands, &Tile::number(number, self.width, self.height), scratch);
                     meter.add(1);
-                    Ok(target)
+                    Ok::<Target, RasterError>(target)
                 })
-                .collect::<Result<Vec<Target>, RasterError>>()
+                .try_in_order()
         })?;
         Ok(Buffers { view: *self, tiles })
     }

@@ -12,6 +12,7 @@ use super::target::Target;
 use super::triangle::{Batch, Triangle};
 use super::view::RasterView;
 use crate::{Cancelled, Mesh, Run};
+use rvachev_num::InOrder;
 use rvachev_num::Meter;
 
 /// Triangles that are prepared at once by a thread.
@@ -120,7 +121,7 @@ impl<'a> MeshLayers<'a> {
             }
             Corner { drawn: if is_whole { Some(snapped(view, relative)) } else { None }, relative }
         };
-        let corners: Vec<Corner> = mesh.positions().par_iter().with_min_len(CHUNK).map(corner).collect();
+        let corners: Vec<Corner> = mesh.positions().par_iter().with_min_len(CHUNK).map(corner).in_order();
         let meter = Meter::new(&preparing, mesh.triangles().len());
         let parts: Vec<(Vec<Triangle>, bool)> = mesh
             .triangles()
@@ -137,7 +138,7 @@ impl<'a> MeshLayers<'a> {
                 meter.add(triangles.len() as u64);
                 Ok(part)
             })
-            .collect::<Result<_, Cancelled>>()?;
+            .try_in_order()?;
         let is_cut = parts.iter().any(|part| part.1);
         let mut triangles = Vec::with_capacity(parts.iter().map(|part| part.0.len()).sum());
         for mut part in parts {

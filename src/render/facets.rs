@@ -25,6 +25,7 @@ use super::facet_block::{Block, NODES, Ray, SIDE, Sketch};
 use crate::eval::{Evaluator, Gradients, Program, Tape};
 use crate::space::{Grid, SurfaceBlocks, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
+use rvachev_num::InOrder;
 use rvachev_num::Meter;
 
 /// Rays step this far over a border, in cells.
@@ -105,7 +106,7 @@ impl Facets {
             meter.add(blocks.len() as u64);
             Ok(made)
         });
-        let made: Result<Vec<Vec<Block>>, Cancelled> = made.collect();
+        let made: Result<Vec<Vec<Block>>, Cancelled> = made.try_in_order();
         let surface: Vec<Block> = made?.into_iter().flatten().collect();
         let blocks = blocks.as_ivec3();
         let tops = found.par_iter().zip(&surface).map(|(found, block)| {

@@ -28,6 +28,7 @@ use super::settings::RenderSettings;
 use super::shade::Visibility;
 use super::spot::Spot;
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 use rvachev_num::Meter;
 
 /// Rays to each of the two lights, of one pixel: the lanes of a vector.
@@ -167,7 +168,7 @@ impl<'a> Obstacles<'a> {
                 meter.add(1);
                 Ok(found)
             })
-            .collect();
+            .try_in_order();
         let tiles = tiles?;
         let mut seen = vec![Visibility::FULL; spots.len()];
         for (tile, found) in tiles.iter().enumerate() {

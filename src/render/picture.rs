@@ -26,6 +26,7 @@ use super::settings::{RenderSettings, Style};
 use super::shade::{Studio, Visibility};
 use super::spot::Spot;
 use crate::{Cancelled, Rays, Run};
+use rvachev_num::InOrder;
 use rvachev_num::Meter;
 
 /// Pixels of a band, about: some tens of megabytes.
@@ -156,7 +157,7 @@ impl Picture<'_> {
                 let (x, y) = (i as u32 % width, first + i as u32 / width);
                 self.spot(x, y, surface)
             })
-            .collect();
+            .in_order();
         drop(seen);
         let open = match obstacles {
             None => vec![Visibility::FULL; spots.len()],
@@ -308,7 +309,7 @@ impl Picture<'_> {
             Some(draft) => draft.samples(&numbers, band.top, n, pixels.len()),
             None => self.scene.hits(&rays, run)?,
         };
-        let spots = rays.par_iter().zip(&hits).map(|(ray, hit)| Spot::new(ray.0, ray.1, hit, self.ground)).collect();
+        let spots = rays.par_iter().zip(&hits).map(|(ray, hit)| Spot::new(ray.0, ray.1, hit, self.ground)).in_order();
         Ok(Fine { numbers, spots })
     }
 
@@ -337,7 +338,7 @@ impl Picture<'_> {
                 None => Some(Visibility::FULL),
                 Some(_) => self.matching(band, spot, places[k / n2], hard),
             })
-            .collect();
+            .in_order();
         let alone: Vec<usize> = (0..matched.len()).filter(|k| matched[*k].is_none()).collect();
         let spots: Vec<Spot> = alone.iter().map(|k| fine.spots[*k]).collect();
         let mut open: Vec<Visibility> = matched.iter().map(|open| open.unwrap_or(Visibility::FULL)).collect();
@@ -352,7 +353,7 @@ impl Picture<'_> {
             let y = row(places[k / n2]) + (f64::from(down) + 0.5) / f64::from(n);
             self.shade(spot, open[k], self.behind(y))
         };
-        Ok(fine.spots.par_iter().enumerate().map(shade).collect())
+        Ok(fine.spots.par_iter().enumerate().map(shade).in_order())
     }
 
     /// The visibility of a spot, from the pixel at `place` and those about it; none if none of

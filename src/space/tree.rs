@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Run};
+use rvachev_num::InOrder;
 use rvachev_num::Meter;
 
 /// A regular grid of cubic blocks.
@@ -141,7 +142,7 @@ pub(crate) fn surface_blocks(
             Ok((part.halves().map(|half| (half, program.clone())).into(), None))
         };
         type Divided = (Vec<(Part, Program)>, Option<[[u32; 3]; 2]>);
-        let next: Result<Vec<Divided>, Cancelled> = parts.into_par_iter().map(divided).collect();
+        let next: Result<Vec<Divided>, Cancelled> = parts.into_par_iter().map(divided).try_in_order();
         parts = Vec::new();
         for (open, whole) in next? {
             parts.extend(open);
@@ -149,7 +150,7 @@ pub(crate) fn surface_blocks(
         }
     }
     let found: Result<Vec<SurfaceBlocks>, Cancelled> =
-        parts.into_par_iter().map(|(part, program)| descend(part, program, (grid, margin), &meter)).collect();
+        parts.into_par_iter().map(|(part, program)| descend(part, program, (grid, margin), &meter)).try_in_order();
     run.report(1.0);
     let found = found?;
     let mut all = SurfaceBlocks { inside, ..SurfaceBlocks::default() };

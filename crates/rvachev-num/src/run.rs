@@ -65,10 +65,14 @@ impl Run {
         if self.threads == 0 || self.threads == rayon::current_num_threads() {
             return job();
         }
-        match rayon::ThreadPoolBuilder::new().num_threads(self.threads).build() {
-            Ok(pool) => pool.install(job),
-            Err(_) => job(),
-        }
+        let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build() else {
+            return job();
+        };
+        // What is the same for all jobs is compiled once.
+        let (mut job, mut done) = (Some(job), None);
+        let run: &mut (dyn FnMut() + Send) = &mut || done = job.take().map(|job| job());
+        pool.install(run);
+        done.expect("the pool has run it")
     }
 
     /// The same run for a part of the job: its reports from 0 to 1 become reports from `from`

@@ -42,6 +42,7 @@ use self::whole::{Part, Whole};
 use super::deviations::Deviation;
 use super::error::FitError;
 use crate::Run;
+use rvachev_num::InOrder;
 
 pub use self::result::{ErrorOfFit, TruncatedSupershape, UnionFit, UnionPart};
 pub use self::segments::Segments;
@@ -166,7 +167,7 @@ fn single_fits(
             error => FitError::Segment { label: *name, source: Box::new(error) },
         })
     };
-    let found = names.par_iter().zip(members).map(fit).collect::<Vec<Result<Found, FitError>>>();
+    let found = names.par_iter().zip(members).map(fit).in_order();
     run.report(1.0);
     // The first error by the order of labels, not of threads.
     found.into_iter().collect()

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::truncated::{PARAMETERS, Row};
 use super::whole::Whole;
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// Tasks that the points are split into, however many threads there are.
 const TASKS: usize = 8;
@@ -101,7 +102,7 @@ impl Normal {
             Ok(sums)
         };
         let size = points.len().div_ceil(TASKS).max(1);
-        let parts = points.par_chunks(size).map(sum).collect::<Result<Vec<Normal>, Cancelled>>()?;
+        let parts = points.par_chunks(size).map(sum).try_in_order()?;
         let mut all = Normal { gradient: vec![0.0; n], matrix: vec![0.0; n * n] };
         for part in parts {
             all.gradient.iter_mut().zip(part.gradient).for_each(|(to, x)| *to += x);

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::truncated::{Row, Truncated, both, either};
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// Points that one task sums; sums are in the same order for any number of threads.
 const CHUNK: usize = 256;
@@ -106,7 +107,7 @@ fn sum_of(points: &[DVec3], run: &Run, of: impl Fn(DVec3) -> f64 + Sync) -> Resu
         run.check()?;
         Ok(chunk.iter().map(|p| of(*p)).sum::<f64>())
     };
-    let sums = points.par_chunks(CHUNK).map(sum).collect::<Result<Vec<f64>, Cancelled>>()?;
+    let sums = points.par_chunks(CHUNK).map(sum).try_in_order()?;
     Ok(sums.into_iter().sum())
 }
 

@@ -23,6 +23,7 @@ use rvachev_num::lanes::{F32, Lanes};
 
 use crate::fit::random::Random;
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// Points that it is found by.
 const MOST: usize = 2200;
@@ -114,7 +115,7 @@ fn sums(
         run.check()?;
         Ok(dispatch!(Level::new(), simd => sums_on(simd, at, sources, moments, what, square)))
     };
-    let chunks: Vec<Vec<DVec3>> = at.par_chunks(CHUNK).map(chunk).collect::<Result<_, Cancelled>>()?;
+    let chunks: Vec<Vec<DVec3>> = at.par_chunks(CHUNK).map(chunk).try_in_order()?;
     Ok(chunks.concat())
 }
 

@@ -22,6 +22,7 @@ use super::sobol::Sobol;
 use super::times::PartTimes;
 use super::words::describe;
 use crate::{Bounds, Run};
+use rvachev_num::InOrder;
 
 /// Points that the volumes in common are estimated from.
 const POINTS: usize = 1 << 14;
@@ -129,10 +130,9 @@ fn compared(
             );
             [contains(nth * CHUNK + i, *p), found]
         };
-        Ok(chunk.iter().enumerate().map(side).collect::<Vec<_>>())
+        Ok::<Vec<_>, FitError>(chunk.iter().enumerate().map(side).collect())
     };
-    let sides: Vec<Vec<[bool; 2]>> =
-        points.par_chunks(CHUNK).enumerate().map(sides).collect::<Result<_, FitError>>()?;
+    let sides: Vec<Vec<[bool; 2]>> = points.par_chunks(CHUNK).enumerate().map(sides).try_in_order()?;
     let (mut both, mut either, mut filled) = (0_usize, 0_usize, 0_usize);
     // Those that are missing apart from those that are too many.
     let mut wrong = [Vec::new(), Vec::new()];

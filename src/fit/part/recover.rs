@@ -29,7 +29,8 @@ use crate::field::COORDINATE_LIMIT;
 use crate::fit::cloud::SIZES;
 use crate::fit::grid::extent;
 use crate::geom::{Mesh, PointCloud};
-use crate::{Bounds, Cancelled, Run};
+use crate::{Bounds, Run};
+use rvachev_num::InOrder;
 
 /// How far pairs are from the surface on either side, in diagonals, without noise.
 const APART: f64 = 0.004;
@@ -230,7 +231,7 @@ fn queries(body: &Body, samples: &Samples, regions: &Regions, seed: u64, run: &R
             run.check()?;
             Ok(points.iter().map(|p| body.winding_number(samples.centre + samples.size * *p)).collect::<Vec<_>>())
         };
-        let numbers = points.par_chunks(WORD).map(numbers).collect::<Result<Vec<_>, Cancelled>>()?;
+        let numbers = points.par_chunks(WORD).map(numbers).try_in_order()?;
         Ok(numbers.concat())
     })?)
 }

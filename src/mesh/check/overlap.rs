@@ -19,6 +19,7 @@ use super::lists::{mapped, sorted};
 use super::meet::{is_degenerate, meet, meet_beyond_edge, meet_beyond_vertex, surely_apart};
 use crate::geom::Mesh;
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 use rvachev_num::Meter;
 
 /// How many pairs are listed.
@@ -173,7 +174,7 @@ impl<'a> Search<'a> {
         {
             run.check()?;
             let union = |group: &[Box]| group[1..].iter().fold(group[0], |a, &b| a.union(b));
-            levels.push(below.par_chunks(GROUP).map(union).collect());
+            levels.push(below.par_chunks(GROUP).map(union).in_order());
         }
         Ok(Search { mesh, fans, order, corners, levels })
     }

@@ -41,6 +41,7 @@ use crate::mesh::signs::{BLOCK, NODES, SIDE, Signs};
 use rvachev_num::Meter;
 
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// No point of a cell is farther from the nearest of its nodes, in cells, with room for rounding:
 /// half of the diagonal.
@@ -208,7 +209,7 @@ impl Parts<'_> {
             meter.step()?;
             Ok(sampler.may_hide(*number, self.blocks[*number], cells, share).then_some(*number))
         };
-        let hidden: Result<Vec<Option<usize>>, Cancelled> = open.par_iter().map(is_lost).collect();
+        let hidden: Result<Vec<Option<usize>>, Cancelled> = open.par_iter().map(is_lost).try_in_order();
         lost.extend(hidden?.into_iter().flatten());
         lost.sort_unstable();
         Ok(lost)

@@ -26,6 +26,7 @@ use rayon::prelude::*;
 use super::samples::Samples;
 use crate::mesh::signs::BLOCK;
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 use rvachev_num::Meter;
 
 /// How much the trend may change the normal within a cell, and how large the box may be of what a
@@ -186,8 +187,8 @@ pub(super) fn even_blocks(samples: &Samples<'_>, run: &Run) -> Result<Vec<bool>,
     let meter = Meter::new(run, 2 * count);
     let goes_on = || meter.step().is_ok();
     let look = |n| if goes_on() { Vertices::new(samples, n) } else { Vertices::Uneven };
-    let own: Vec<Vertices> = (0..count).into_par_iter().map(look).collect();
-    let even = (0..count).into_par_iter().map(|n| goes_on() && is_even(samples, &own, n)).collect();
+    let own: Vec<Vertices> = (0..count).into_par_iter().map(look).in_order();
+    let even = (0..count).into_par_iter().map(|n| goes_on() && is_even(samples, &own, n)).in_order();
     run.check()?;
     Ok(even)
 }

@@ -23,6 +23,7 @@ use super::samples::{Samples, cell_number, split_cell};
 use super::sharp::{AT_ONCE, Fan, Fans};
 use crate::mesh::feature::{INSET, Segment};
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 
 impl Fans {
     /// Finds out which edges between fans are turned, and to what.
@@ -45,7 +46,7 @@ impl Fans {
             Ok(found)
         };
         let found: Result<Vec<Vec<Turned>>, Cancelled> =
-            all.fans.par_chunks(AT_ONCE).enumerate().map_init(|| Probe::new(samples, sampler), of_fans).collect();
+            all.fans.par_chunks(AT_ONCE).enumerate().map_init(|| Probe::new(samples, sampler), of_fans).try_in_order();
         let fans = self.fans.len() as u32;
         for Turned { fans: [low, high], segments, at } in found?.into_iter().flatten() {
             let places = [(low, segments[0]), (high, segments[1])].map(|(fan, nth)| {

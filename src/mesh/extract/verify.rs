@@ -27,6 +27,7 @@ use super::sharp::{AT_ONCE, Fan, Fans};
 use super::third::Face;
 use crate::mesh::feature::{Crease, Segment, Slope, settle, tangents};
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// Fans that are looked at together.
 const FEW: usize = 32;
@@ -107,7 +108,7 @@ impl Fans {
             Ok(chunk.iter().map(|one| tell(probe, one)).collect::<Vec<U>>())
         };
         let found: Result<Vec<Vec<U>>, Cancelled> =
-            all.par_chunks(FEW).map_init(|| Probe::new(samples, sampler), of_chunk).collect();
+            all.par_chunks(FEW).map_init(|| Probe::new(samples, sampler), of_chunk).try_in_order();
         Ok(found?.into_iter().flatten().collect())
     }
 
@@ -148,7 +149,7 @@ impl Fans {
         };
         let chunks = self.fans.par_chunks(AT_ONCE).enumerate();
         let found: Result<Vec<Vec<(u32, bool)>>, Cancelled> =
-            chunks.map_init(|| Probe::new(samples, sampler), of_chunk).collect();
+            chunks.map_init(|| Probe::new(samples, sampler), of_chunk).try_in_order();
         Ok(found?.into_iter().flatten().collect())
     }
 

@@ -15,6 +15,7 @@ use crate::eval::Program;
 use crate::geom::Mesh;
 use crate::mesh::slopes::Slopes;
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// Corners that are looked at before it is asked whether to go on.
 const AT_ONCE: usize = 1 << 12;
@@ -57,7 +58,7 @@ pub(super) fn lost(
         run.check()?;
         Ok(corners.iter().filter_map(far).collect::<Vec<_>>())
     };
-    let found: Result<Vec<Vec<_>>, Cancelled> = corners.par_chunks(AT_ONCE).map(of_chunk).collect();
+    let found: Result<Vec<Vec<_>>, Cancelled> = corners.par_chunks(AT_ONCE).map(of_chunk).try_in_order();
     Ok(found?.concat())
 }
 

@@ -31,6 +31,7 @@ use crate::distance::compiled_with;
 use crate::eval::Program;
 use crate::geom::Contours;
 use crate::{COORDINATE_LIMIT, Cancelled, Plane, PlaneBounds, Run, Solid};
+use rvachev_num::InOrder;
 
 /// How far the first square goes beyond the region. Corners of squares keep off the round
 /// coordinates that faces are fond of.
@@ -181,7 +182,7 @@ fn stack(
             joined.add(1);
             Ok(Contours::new(lines, unresolved))
         };
-        sections.par_iter().zip(&found).map(contours).collect()
+        sections.par_iter().zip(&found).map(contours).try_in_order()
     });
     Ok(made?)
 }

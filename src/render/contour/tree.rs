@@ -24,6 +24,7 @@ use super::spread::Spread;
 use super::square::{Node, Root, Square};
 use crate::eval::Program;
 use crate::{Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// So many squares of a plane are divided in a task at most: with slopes that do not tell, contours
 /// of a fine tolerance would have no end.
@@ -118,7 +119,7 @@ impl Tree<'_> {
             meter.add(1);
             Ok(part)
         };
-        let parts: Vec<Part> = tasks.into_par_iter().map(all_of).collect::<Result<_, Cancelled>>()?;
+        let parts: Vec<Part> = tasks.into_par_iter().map(all_of).try_in_order()?;
         let mut found: Vec<Found> = Vec::new();
         found.resize_with(self.sections.len(), Found::default);
         for part in std::iter::once(first).chain(parts) {
