@@ -90,19 +90,18 @@ pub(super) fn held(program: &Program, cell: &Bounds) -> Held {
     let whole = cell.size().element_product();
     let is_smooth = program.is_steady() && !program.tears();
     let first = by_concavity(program, cell).or_else(|| is_smooth.then(|| by_slopes(program, cell).held(cell)));
-    let better = |best: Held, other: Held| if other.open() < best.open() { other } else { best };
-    let mut best = match first {
-        Some(first) if first.open() < SOME * whole => return first,
-        Some(first) => cuts::held(program, cell).map_or(first, |other| better(first, other)),
-        None => match cuts::held(program, cell) {
-            Some(other) => other,
-            None => return by_directions(program, cell).held(cell),
-        },
-    };
-    if best.open() >= MUCH * whole {
-        best = better(best, by_directions(program, cell).held(cell));
+    let less = |best: Option<Held>, other: Held| best.filter(|best| best.open() <= other.open()).unwrap_or(other);
+    let leaves = |best: Option<Held>, part: f64| best.is_none_or(|best| best.open() >= part * whole);
+    let mut best = first;
+    if leaves(best, SOME)
+        && let Some(cut) = cuts::held(program, cell)
+    {
+        best = Some(less(best, cut));
     }
-    best
+    match best {
+        Some(best) if best.open() < MUCH * whole => best,
+        _ => less(best, by_directions(program, cell).held(cell)),
+    }
 }
 
 /// By slopes, a plane about the middle of a cell, and the volume between what it says is inside and

@@ -1,10 +1,10 @@
 //! The volume and the moments of a solid, within bounds that are certain.
 //!
-//! The solid's box is divided as for its mesh. Blocks inside count as they are. If all faces are flat
-//! the others are [told to rounding](super::flat). Else of those that the surface may cross it is known how much they hold [at least and at most](super::bracket), to
-//! the fourth power of their size where the surface is smooth, to the third along creases. Those
-//! that leave most open are halved along all axes, with programs narrowed to the halves, until
-//! what is open of all is little enough.
+//! The solid's box is divided as for its mesh. Blocks inside count as they are. Those that the
+//! surface may cross are [told to rounding](super::flat) if all its faces are flat. Else it is known
+//! how much they hold [at least and at most](super::bracket), to the fourth power of their size but
+//! where many faces meet. Those that leave most open are halved along all axes, with programs
+//! narrowed to the halves, until what is open of all is little enough.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -19,7 +19,8 @@ use crate::space::{Block, Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::Zone;
 
-/// They begin as much before the box, in their sides: so that faces are hardly ever in sides of cells.
+/// Cells begin so much before the box, as a part of their side, that hardly ever a face is in a side of
+/// one.
 const ASIDE: f64 = 0.061_803_4;
 
 /// What an integral may take, and what it is to tell.

@@ -40,11 +40,10 @@ impl Patches {
                 continue;
             }
             for at in (node.first..node.first + node.count).map(|at| at as usize) {
-                if self.patch_apart(&seen, at) <= near {
-                    let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|place| self.point(at, place));
-                    let across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-                    found.push((across.length(), across.normalize_or_zero(), corners));
-                }
+                let Some((face, sides)) = self.at(at).filter(|_| self.patch_apart(&seen, at) <= near) else { continue };
+                let [a, e, f] = [double(face.a), double(sides.e), double(sides.f)];
+                let across = e.cross(f);
+                found.push((across.length(), across.normalize_or_zero(), [a, a + e, a + f]));
             }
             if found.len() > PATCHES {
                 return None;
@@ -58,6 +57,7 @@ impl Patches {
             let normal = own.iter().map(|(area, normal, _)| *area * *normal).sum::<DVec3>().try_normalize()?;
             let heights = own.iter().flat_map(|(.., corners)| corners).map(|p| normal.dot(*p));
             let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
+            let [low, high] = [low, high].map(|height| normal.dot(self.frame.outward(height * normal)));
             layers.push(Layer { normal, low: low - least, high: high + least });
             if layers.len() > LAYERS {
                 return None;
