@@ -7,8 +7,9 @@
 //! surface; of all distances near the surface; and of single points in double precision. Then how
 //! fast files are read, and how long clearances of two imported meshes take.
 //!
-//! Words after `--` choose sizes by their names; `clearance` chooses the clearances alone. `save` writes the meshes and the points near them
-//! for other programs: `target/imports-NAME.ply` and `.xyz`.
+//! Words after `--` choose sizes by their names; `clearance` chooses the clearances alone, words after
+//! it those whose names have one of them. `save` writes the meshes and the points near them for other
+//! programs: `target/imports-NAME.ply` and `.xyz`.
 
 use std::fs;
 use std::hint::black_box;
@@ -95,8 +96,8 @@ fn values(leaf: &dyn AnyField, columns: &[Vec<f32>; 3], band: f64) -> f64 {
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
-    if words.iter().any(|word| word == "clearance") {
-        return clearances();
+    if let Some(at) = words.iter().position(|word| word == "clearance") {
+        return clearances(&words[at + 1..]);
     }
     let is_chosen = |name: &str| words.iter().all(|word| word == "save") || words.iter().any(|word| word == name);
     println!(
@@ -134,12 +135,12 @@ fn main() {
         }
     }
     read();
-    clearances();
+    clearances(&[]);
 }
 
 /// Clearances of meshes with default settings, in milliseconds of all threads, when their triangles
 /// are known.
-fn clearances() {
+fn clearances(words: &[String]) {
     let mesh = |solid: &Solid| {
         Solid::from_mesh(&solid.mesh(&MeshSettings::default()).expect("it can be meshed"), MeshSolid::default())
     };
@@ -156,13 +157,18 @@ fn clearances() {
         ("a block in itself", own.clone(), own.clone()),
         ("balls, a gap between", ball.clone(), ball.translate([4.1, 0.0, 0.0])),
         ("a ball in itself", ball.clone(), ball.clone()),
+        ("balls in each other", ball.clone(), ball.translate([1.0, 0.7, 0.3])),
+        ("balls that are just in each other", ball.clone(), ball.rotate_x(deg(50.0)).translate([3.9, 0.0, 0.0])),
     ];
     for (name, one, other) in pairs {
+        if !words.is_empty() && !words.iter().any(|word| name.contains(word.as_str())) {
+            continue;
+        }
         let clearance = || one.clearance(&other, &Run::default()).expect("they can be asked");
         black_box(clearance());
         let start = ProcessTime::now();
         black_box(clearance());
-        println!("clearance, {name}: {:.0} ms", 1e3 * start.elapsed().as_secs_f64());
+        println!("clearance, {name}: {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
     }
 }
 

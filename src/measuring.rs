@@ -42,7 +42,7 @@
 //! | measured | of | by | error |
 //! |---|---|---|---|
 //! | volume, centroid, inertia | a solid | [`Solid::measure`] | a bound that is certain |
-//! | area | a solid | [`Solid::measure`] | an estimate |
+//! | area | a solid | [`Solid::measure`] | of flat faces rounding, of others an estimate |
 //! | the same, genus, shells, faults | a mesh | [`Mesh::check`] | those of its triangles, by rounding |
 //! | connected components, by size | a mesh | [`Mesh::components`], [`keep_components`](Mesh::keep_components) | none |
 //! | openings | a mesh | [`Mesh::open_edges`] | none |
@@ -58,7 +58,8 @@
 //! The volume of a mesh is that of its triangles: it is as wrong as the mesh is. Of a solid it is
 //! found to the tolerance that is asked for, or as near as a million blocks come. How far it may be
 //! off is certain. Superellipsoids, supertoroids, generalised superquadrics, ellipsoids and bounded
-//! exact primitives have closed forms: see [`Solid::measure`].
+//! exact primitives have closed forms, and what has flat faces is summed up exactly: see
+//! [`Solid::measure`].
 //!
 //! ```
 //! use rvachev::{CellSize, MeshSettings, Solid};
@@ -104,9 +105,9 @@
 //!
 //! How far two solids are apart, with the two nearest points; or how deep they go into each other,
 //! and what volume they have in common. What only touches does not overlap. Of meshes that were
-//! read, and of extruded polygons such as gears, it is told from their triangles, in milliseconds
-//! if they are apart; where they touch over thousands of triangles, or overlap, in some tenths of a
-//! second.
+//! read, and of extruded polygons such as gears, it is told from their triangles, those of flat faces
+//! taken together: in milliseconds if they are apart or flat, and in some tenths of a second where
+//! round ones touch over thousands of triangles, or overlap.
 //!
 //! ```
 //! use rvachev::{Run, Solid};

@@ -4,8 +4,8 @@
 //! concave values concave and maxima convex ones convex; a negation exchanges the two.
 
 use super::program::{Kind, Node, Program};
-use rvachev_field::Op;
-use rvachev_field::Rule;
+use super::scene::Instance;
+use rvachev_field::{Op, Rule, Zone};
 
 /// How the value bends along straight lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +34,29 @@ impl Program {
     /// How the value bends along straight lines, where that is known: leaves that are not
     /// deformed, their intersections and the complements of these.
     pub(crate) fn bend(&self) -> Option<Bend> {
+        self.bend_by(|leaf| leaf.field.convex().then_some(Bend::Concave))
+    }
+
+    /// How it does along those lines that lie in a zone.
+    pub(crate) fn bend_over(&self, zone: &Zone) -> Option<Bend> {
+        self.bend_by(|leaf| {
+            let is_concave = leaf.field.is_concave_over(&zone.mapped(&leaf.to_local))?;
+            Some(Bend::Concave.flip_if(!is_concave))
+        })
+    }
+
+    /// Whether it may bend one way in parts of a region if it does not in all of it: copies, which
+    /// are seen one by one there, and polygons.
+    pub(crate) fn bends_in_parts(&self) -> bool {
+        let is_folded = |frame: &u32| self.scene.frame(*frame).is_some_and(|frame| frame.warp.folds());
+        let may_bend = |leaf: u32| {
+            let field = &self.instance(leaf).field;
+            field.is_steady() && (field.is_faceted() || field.convex())
+        };
+        self.frames.iter().all(is_folded) && self.nodes.iter().filter_map(Node::valued_by).all(may_bend)
+    }
+
+    fn bend_by(&self, of_leaf: impl Fn(&Instance) -> Option<Bend>) -> Option<Bend> {
         if !self.frames.is_empty() {
             return None;
         }
@@ -41,7 +64,7 @@ impl Program {
         for node in &self.nodes[..] {
             let mut operands = self.list(node).iter().map(|e| bends[e.node()].map(|bend| bend.flip_if(e.negated())));
             let bend = match &node.kind {
-                Kind::Leaf(leaf) => self.instance(*leaf).field.convex().then_some(Bend::Concave),
+                Kind::Leaf(leaf) => of_leaf(self.instance(*leaf)),
                 Kind::Shift(_) => operands.next().flatten(),
                 Kind::Join { op, rule: Rule::MinMax, .. } => {
                     let bend = if *op == Op::And { Bend::Concave } else { Bend::Convex };

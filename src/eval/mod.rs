@@ -8,6 +8,7 @@
 mod accuracy;
 mod apart;
 mod around;
+mod atoms;
 mod bend;
 mod bevel;
 mod bracket;
@@ -85,5 +86,6 @@ pub(crate) use point::limited;
 pub(crate) use ray::{Care, bracket, first_hit};
 pub(crate) use runs::Block;
 pub(crate) use rvachev_field::{Crease, Op};
+pub(crate) use scene::Instance;
 pub(crate) use source::{CompileError, DistanceSource, Surface, Wanted, reach, surface};
 pub(crate) use thin::SlenderLeaf;

@@ -10,8 +10,8 @@
 //! | format | read | not read: an error |
 //! |---|---|---|
 //! | STL | binary and text, which the content tells | |
-//! | OBJ | v, vt, vn, f, colours behind v | faces before their vertices |
-//! | PLY | text, binary in both orders; of other elements and properties any | |
+//! | OBJ | v, vt, vn, f, colours behind v; in any order | |
+//! | PLY | text, binary in both orders; faces and strips; of other elements and properties any | |
 //! | 3MF | meshes and components, in other parts of the archive too; colours, unit; UTF-8 and UTF-16 | what is encrypted |
 //! | GLB | triangles, strips, fans, points; accessors of any kind, sparse ones too; nodes | data beside the file, compression |
 //! | XYZ, CSV | rows of numbers, with names above the columns or without | |

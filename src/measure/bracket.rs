@@ -13,26 +13,31 @@
 //!   after nine values. Of complements it is the other way round.
 //! * Of other formulas the ranges of the value's slopes over the cell tell the plane and the angle
 //!   (the mean-value form). The cones are linear functions in each of the eight boxes about q.
+//! * Where there may be creases, the cell is [cut](super::cuts) by the planes of all that meet there.
 //! * What is searched for, folded or deformed, tells the directions along which it is entered, and
 //!   not left: from a point inside all that lies along them is inside.
 
 use glam::DVec3;
 
 use super::clip::{self, Linear};
+use super::cuts;
 use super::moments::Moments;
+use super::polytope::Plane;
 use crate::Bounds;
 use crate::eval::Bend;
 use crate::program::Program;
 use rvachev_field::{Way, Zone};
 
 /// Values are off by rounding, as parts of the coordinates: less than this.
-const ROUNDING: f64 = 1e-13;
+pub(super) const ROUNDING: f64 = 1e-13;
 
 /// Angles that the surface may be turned by, as their tangents. Each takes four directions, so that
 /// two are asked about at a time.
 const ANGLES: [f64; 14] = [1e-5, 1e-3, 3e-3, 7e-3, 0.013, 0.022, 0.035, 0.055, 0.085, 0.13, 0.2, 0.32, 0.5, 1.0];
 
-/// Where more than this part of a cell is open, another way of telling is tried.
+/// Where more than these parts of a cell are open, other ways of telling are tried: planes of all
+/// parts of the program, and directions.
+const SOME: f64 = 0.05;
 const MUCH: f64 = 0.5;
 
 /// How near to each other points inside and outside are found, as a part of the cell's diagonal.
@@ -82,17 +87,33 @@ struct Bracket {
 
 /// What a cell, which the surface of the program may cross, has of the solid.
 pub(super) fn held(program: &Program, cell: &Bounds) -> Held {
-    let is_smooth = || program.is_steady() && !program.tears();
-    let first = match by_concavity(program, cell) {
-        Some(held) => held,
-        None if is_smooth() => by_slopes(program, cell).held(cell),
-        None => return by_directions(program, cell).held(cell),
-    };
-    if first.open() < MUCH * cell.size().element_product() {
-        return first;
+    let whole = cell.size().element_product();
+    let is_smooth = program.is_steady() && !program.tears();
+    let first = by_concavity(program, cell).or_else(|| is_smooth.then(|| by_slopes(program, cell).held(cell)));
+    let less = |best: Option<Held>, other: Held| best.filter(|best| best.open() <= other.open()).unwrap_or(other);
+    let leaves = |best: Option<Held>, part: f64| best.is_none_or(|best| best.open() >= part * whole);
+    let mut best = first;
+    if leaves(best, SOME)
+        && let Some(cut) = cuts::held(program, cell)
+    {
+        best = Some(less(best, cut));
     }
-    let other = by_directions(program, cell).held(cell);
-    if other.open() < first.open() { other } else { first }
+    match best {
+        Some(best) if best.open() < MUCH * whole => best,
+        _ => less(best, by_directions(program, cell).held(cell)),
+    }
+}
+
+/// By slopes, a plane about the middle of a cell, and the volume between what it says is inside and
+/// what is; nothing of what need not change as its slopes say.
+pub(super) fn by_plane(program: &Program, cell: &Bounds) -> Option<(Plane, f64)> {
+    if !program.is_steady() || program.tears() {
+        return None;
+    }
+    let bracket = by_slopes(program, cell);
+    let Linear { at, value, slope } = bracket.plane;
+    let plane = Plane::of(at - cell.center(), value, slope)?;
+    Some((plane, bracket.held(cell).open()))
 }
 
 impl Bracket {
@@ -107,7 +128,7 @@ impl Bracket {
 /// Of a concave or convex value: between the tangent at the point that is nearest to the surface,
 /// and what is linear between the corners.
 fn by_concavity(program: &Program, cell: &Bounds) -> Option<Held> {
-    let is_complement = program.bend()? == Bend::Convex;
+    let is_complement = program.bend_over(&Zone::of_bounds(cell))? == Bend::Convex;
     let sign = if is_complement { -1.0 } else { 1.0 };
     let at = nearest_to_surface(cell, program.gradient(cell.center()));
     let (value, slope) = program.gradient(at);

@@ -1,14 +1,18 @@
 //! Cells of which one imported mesh tells all.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::bracket::Held;
 use super::columns::Columns;
+use super::exact::Known;
 use super::facets::Facets;
+use crate::eval::Instance;
 use crate::program::Program;
 use crate::{Bounds, Cancelled, Run};
 
 /// The triangles of a program's imported meshes that tell what these hold, by their leaves.
+#[derive(Default)]
 pub(super) struct Enclosed(BTreeMap<u32, Columns>);
 
 impl Enclosed {
@@ -21,6 +25,16 @@ impl Enclosed {
             }
         }
         Ok(Enclosed(all))
+    }
+
+    /// The same of leaves of which it is known, by what triangles enclose them in their frames.
+    pub(super) fn known<'a>(program: &Program, known: impl Iterator<Item = &'a Known>) -> Enclosed {
+        let known: Vec<&Known> = known.collect();
+        let columns = |leaf: &Instance| {
+            let Known { few, .. } = known.iter().find(|known| Arc::ptr_eq(&known.field, &leaf.field))?;
+            Some((leaf.number, Columns::new(few.0.placed(&leaf.to_local.inverse()))))
+        };
+        Enclosed(program.plain_leaves().filter_map(columns).collect())
     }
 
     /// What a cell has of a program that is one of these leaves, or all but it.

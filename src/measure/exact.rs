@@ -5,9 +5,10 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
-use rvachev_field::{Patch, Patches, Polygon};
+use rvachev_field::{AnyField, Patch, Patches, Polygon};
 
 use super::facets::Facets;
+use super::merged::merged;
 use crate::eval::{Accuracy, Surface};
 use crate::solid::{Node, Sweep};
 use crate::{Angle, Bounds, Cancelled, Caps, Extrusion, Profile, Run, Solid};
@@ -18,8 +19,21 @@ const MOST: usize = 1 << 18;
 /// What counts as touching, as a part of the size.
 const TOUCHING: f64 = 1e-4;
 
+/// What lies in a plane to within this part of the size is flat: some more than single precision
+/// moves corners by.
+const FLAT: f64 = 8.0 * f32::EPSILON as f64;
+
 /// The triangles of a solid, kept with it; nothing if it is not made of such.
 struct Kept(Option<Triangles>);
+
+/// The same surface from as few triangles as its flat faces take.
+pub(super) struct Few(pub(super) Triangles);
+
+/// A leaf with the triangles that are its surface.
+pub(super) struct Known {
+    pub(super) field: Arc<dyn AnyField>,
+    pub(super) few: Arc<Few>,
+}
 
 /// The surface that they are where the solid was moved to, kept with that.
 struct There(Arc<Surface>);
@@ -31,6 +45,14 @@ pub(super) struct Triangles {
     pub(super) rounding: f64,
 }
 
+impl Triangles {
+    /// After a map.
+    pub(super) fn placed(&self, map: &DAffine3) -> Facets {
+        let triangles = self.all.iter().map(|triangle| placed(triangle, map)).collect();
+        Facets::new(triangles, self.rounding * stretch(map))
+    }
+}
+
 /// The surface of a solid, if triangles are exactly that.
 pub(super) fn surface(solid: &Solid, run: &Run) -> Result<Option<Arc<Surface>>, Cancelled> {
     if let Some(there) = solid.shelf().find(|_: &There| true) {
@@ -40,8 +62,8 @@ pub(super) fn surface(solid: &Solid, run: &Run) -> Result<Option<Arc<Surface>>, 
     if !matches!(still.node(), Node::Leaf(_) | Node::Swept { .. }) {
         return Ok(None);
     }
-    let kept = kept(still, run)?;
-    let Kept(Some(Triangles { all, rounding })) = &*kept else { return Ok(None) };
+    let Some(few) = few(still, run)? else { return Ok(None) };
+    let Few(Triangles { all, rounding }) = &*few;
     let patch = |triangle: &[DVec3; 3]| Patch::flat(placed(triangle, &map));
     let patches = Patches::new(&all.iter().map(patch).collect::<Vec<Patch>>(), run)?;
     let bounds = patches.bounds();
@@ -62,8 +84,15 @@ pub(super) fn facets(solid: &Solid, run: &Run) -> Result<Option<Triangles>, Canc
     let Node::Leaf(_) = still.node() else { return Ok(None) };
     let kept = kept(still, run)?;
     let Kept(Some(own)) = &*kept else { return Ok(None) };
-    let all = own.all.iter().map(|triangle| placed(triangle, &map)).collect();
-    Ok(Some(Triangles { all, rounding: own.rounding * stretch(&map) }))
+    let facets = own.placed(&map);
+    Ok(Some(Triangles { rounding: facets.rounding(), all: facets.triangles }))
+}
+
+/// The leaf that was moved to make a solid, if triangles are exactly its surface.
+pub(super) fn leaf(solid: &Solid, run: &Run) -> Result<Option<Known>, Cancelled> {
+    let (still, _) = at_rest(solid);
+    let Node::Leaf(field) = still.node() else { return Ok(None) };
+    Ok(few(still, run)?.map(|few| Known { field: field.clone(), few }))
 }
 
 /// The triangles of a solid at rest, found once.
@@ -74,6 +103,21 @@ fn kept(still: &Solid, run: &Run) -> Result<Arc<Kept>, Cancelled> {
     let kept = Arc::new(Kept(triangles(still, run)?));
     still.shelf().keep(kept.clone());
     Ok(kept)
+}
+
+/// Those of a solid at rest without what divides its flat faces, found once.
+fn few(still: &Solid, run: &Run) -> Result<Option<Arc<Few>>, Cancelled> {
+    if let Some(few) = still.shelf().find(|_: &Few| true) {
+        return Ok(Some(few));
+    }
+    let kept = kept(still, run)?;
+    let Kept(Some(Triangles { all, rounding })) = &*kept else { return Ok(None) };
+    let off = FLAT * Bounds::from_points(all.iter().flatten().copied()).longest_side();
+    let fewer = merged(all, off, run)?;
+    let rounding = rounding + if fewer.len() < all.len() { 4.0 * off } else { 0.0 };
+    let few = Arc::new(Few(Triangles { all: fewer, rounding }));
+    still.shelf().keep(few.clone());
+    Ok(Some(few))
 }
 
 /// A triangle after a map, which looks outwards still.

@@ -61,8 +61,12 @@ impl Facets {
             if is_turned { [a, c, b] } else { [a, b, c] }
         };
         let stretch = map.matrix3.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
-        let triangles = mesh.triangles().iter().map(place).collect();
-        Ok(Some(Facets { triangles, rounding: rounding * stretch }))
+        Ok(Some(Facets::new(mesh.triangles().iter().map(place).collect(), rounding * stretch)))
+    }
+
+    /// Triangles that are known to tell what they hold.
+    pub(super) fn new(triangles: Vec<[DVec3; 3]>, rounding: f64) -> Facets {
+        Facets { triangles, rounding }
     }
 
     /// How far the surface may be off them.

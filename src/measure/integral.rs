@@ -1,27 +1,38 @@
 //! The volume and the moments of a solid, within bounds that are certain.
 //!
-//! The solid's box is divided as for its mesh. Blocks inside count as they are. Of those that the
-//! surface may cross it is known how much they hold [at least and at most](super::bracket), to
-//! the fourth power of their size where the surface is smooth, to the third along creases. Those
-//! that leave most open are halved along all axes, with programs narrowed to the halves, until
-//! what is open of all is little enough.
+//! The solid's box is divided as for its mesh. Blocks inside count as they are. Those that the
+//! surface may cross are [told to rounding](super::flat) if all its faces are flat. Else it is known
+//! how much they hold [at least and at most](super::bracket), to the fourth power of their size but
+//! where many faces meet. Those that leave most open are halved along all axes, with programs
+//! narrowed to the halves, until what is open of all is little enough.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::bracket::{Held, held};
 use super::enclosed::Enclosed;
+use super::flat::flat;
 use super::moments::Moments;
 use crate::eval::Narrowed;
 use crate::program::Program;
 use crate::space::{Block, Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
+use rvachev_field::Zone;
 
-/// Blocks along the longest side at first.
-const FIRST: f64 = 12.0;
+/// Cells begin so much before the box, as a part of their side, that hardly ever a face is in a side of
+/// one.
+const ASIDE: f64 = 0.061_803_4;
 
-/// After so many cells the work ends, with what is certain then.
-pub(super) const MOST: usize = 1 << 20;
+/// What an integral may take, and what it is to tell.
+#[derive(Clone, Copy)]
+pub(super) struct Effort {
+    /// The volume is told to this part of it.
+    pub(super) tolerance: f64,
+    /// Cells along the longest side at first.
+    pub(super) first: f64,
+    /// After so many cells the work ends, with what is certain then.
+    pub(super) most: usize,
+}
 
 /// A solid's volume is not told more finely than this part of its box.
 const FINEST: f64 = 1e-6;
@@ -29,8 +40,8 @@ const FINEST: f64 = 1e-6;
 /// Of what may be left open this much is left to cells that are not divided.
 const LEFT: f64 = 0.5;
 
-/// Sums are off by rounding, as a part of the volume: of [`MOST`] numbers, less than this.
-const ROUNDING: f64 = 2e-10;
+/// Sums are off by rounding, as a part of the volume: of a million numbers, less than this.
+pub(super) const ROUNDING: f64 = 2e-10;
 
 /// Moments of a solid, and how far they may be off.
 pub(super) struct Integral {
@@ -42,6 +53,8 @@ pub(super) struct Integral {
     pub(super) centroid_error: f64,
     /// Each entry of the inertia about the centroid is.
     pub(super) inertia_error: f64,
+    /// The area, if all faces are flat.
+    pub(super) area: Option<f64>,
 }
 
 /// A cell that the surface may cross.
@@ -102,23 +115,24 @@ impl Sums {
             volume_error: self.error() + ROUNDING * moments.volume + rounded,
             centroid_error,
             inertia_error: second + rounding + if shifted.is_nan() { f64::INFINITY } else { shifted },
+            area: None,
         }
     }
 }
 
-/// The integral over what is inside a program, which is nowhere but in a box, to a part of the
-/// volume, or what so many cells tell.
+/// The integral over what is inside a program, which is nowhere but in a box. Meshes tell what they
+/// hold.
 pub(super) fn integral(
-    program: &Program,
+    (program, enclosed): (&Program, Enclosed),
     bounds: &Bounds,
-    tolerance: f64,
-    most: usize,
+    Effort { tolerance, first, most }: Effort,
     run: &Run,
 ) -> Result<Integral, Cancelled> {
     let [to_find, to_divide] = run.stages([0.1, 0.9]);
-    let side = bounds.longest_side() / FIRST;
-    let blocks = (bounds.size() / side).to_array().map(|count| (count.ceil() as u32).max(1));
-    let grid = Grid { origin: bounds.min, side, blocks };
+    let side = bounds.longest_side() / first;
+    let margin = DVec3::splat(ASIDE * side);
+    let blocks = ((bounds.size() + margin) / side).to_array().map(|count| (count.ceil() as u32).max(1));
+    let grid = Grid { origin: bounds.min - margin, side, blocks };
     let mut found = surface_blocks(program, &grid, 0.0, &to_find)?;
     // Sums do not depend on the number of threads.
     found.inside.sort_unstable();
@@ -127,15 +141,22 @@ pub(super) fn integral(
         let part = grid.bounds(*from, *to);
         inside.add(&Moments::cuboid(part.center(), part.size()));
     }
-    let enclosed = Enclosed::new(program, &to_find)?;
-    let first = |block: &Block| {
-        run.check()?;
+    let place = |block: &Block| {
         let bounds = grid.bounds(block.index, block.index.map(|at| at + 1));
-        let program = found.programs[block.program as usize].clone();
+        (bounds, unfolded(found.programs[block.program as usize].clone(), &bounds))
+    };
+    let places: Vec<(Bounds, Program)> = found.blocks.iter().map(place).collect();
+    if let Some((moments, area)) = flat(&places, &to_find)? {
+        inside.add(&moments);
+        let sums = Sums { inside, cells: Vec::new(), enclosed: Enclosed::default(), bounds: *bounds };
+        return Ok(Integral { area: Some(area), ..sums.integral() });
+    }
+    let first = |(bounds, program): (Bounds, Program)| {
+        run.check()?;
         let held = enclosed.held(&program, &bounds).unwrap_or_else(|| held(&program, &bounds));
         Ok(Cell { held, bounds, program })
     };
-    let cells = found.blocks.par_iter().map(first).collect::<Result<Vec<Cell>, Cancelled>>()?;
+    let cells = places.into_par_iter().map(first).collect::<Result<Vec<Cell>, Cancelled>>()?;
     let mut asked = cells.len();
     let mut sums = Sums { inside, cells, enclosed, bounds: *bounds };
     let smallest = FINEST * bounds.size().element_product();
@@ -150,6 +171,11 @@ pub(super) fn integral(
         asked += 8 * chosen.len();
         sums.divide(chosen, &to_divide)?;
     }
+}
+
+/// The program of one copy, in cells that no other copy reaches into.
+pub(super) fn unfolded(program: Program, cell: &Bounds) -> Program {
+    program.unfolded(&Zone::of_bounds(cell)).unwrap_or(program)
 }
 
 /// The cells that leave most open, until what the others leave is at most `left`; not more than so
@@ -180,6 +206,7 @@ impl Sums {
                     Narrowed::Same => program.clone(),
                     Narrowed::Simpler(simpler) => simpler,
                 };
+                let program = unfolded(program, &part);
                 let held = self.enclosed.held(&program, &part).unwrap_or_else(|| held(&program, &part));
                 Some(Ok(Cell { held, bounds: part, program }))
             });

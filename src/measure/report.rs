@@ -28,7 +28,8 @@ pub struct MeasureReport {
     pub inertia_error: f64,
     /// The area of the surface, in square length units.
     pub area: f64,
-    /// How far the area may be off: an estimate, unless [`is_closed_form`](Self::is_closed_form).
+    /// How far the area may be off: rounding, of closed forms and flat faces; of others an
+    /// estimate.
     pub area_error: f64,
     /// Whether all of it is known in closed form, right to rounding.
     pub is_closed_form: bool,

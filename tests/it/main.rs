@@ -35,6 +35,8 @@ mod lengths;
 mod many;
 mod maps;
 mod measure;
+#[cfg(feature = "import")]
+mod measure_part;
 mod mesh;
 mod models;
 mod narrow;

@@ -4,8 +4,8 @@
 use glam::{DMat3, DVec3};
 use rvachev::catalogue::{Group, Part};
 use rvachev::{
-    CancelToken, CellSize, GeneralisedSuperquadric, MeasureReport, Mesh, MeshSettings, MeshSolid, Progress, RFunction,
-    Run, Solid, catalogue, deg, rad,
+    CancelToken, CellSize, GeneralisedSuperquadric, MeasureReport, Mesh, MeshSettings, MeshSolid, Profile, Progress,
+    RFunction, Run, Solid, catalogue, deg, rad,
 };
 
 fn most(matrix: DMat3) -> f64 {
@@ -232,4 +232,40 @@ fn areas_of_what_meshes_do_not_show_are_not_told() {
     // Boxes that touch have nothing in common.
     let none = Solid::cuboid([1.0; 3]) & Solid::cuboid([1.0; 3]).translate([1.0, 0.0, 0.0]);
     assert_eq!(none.measure(1e-3).unwrap().volume, 0.0);
+}
+
+/// Flat faces are summed up to rounding, whatever tolerance is asked for: of joins with flush faces,
+/// of copies, of polygons, turned and stretched.
+#[test]
+fn flat_faces_are_right_to_rounding() {
+    let turned = |solid: &Solid| solid.rotate_x(deg(20.0)).rotate_z(deg(35.0)).translate([3.0, -1.0, 2.0]);
+    let tooth = Solid::cuboid([1.7, 24.0, 1.5]);
+    let teeth = (0..20).map(|n| tooth.translate([2.0 * f64::from(n), 0.0, 0.0]));
+    let of_tooth = [1.7 * 24.0 * 1.5, 2.0 * (1.7 * 24.0 + 24.0 * 1.5 + 1.5 * 1.7)];
+    let block = Solid::cuboid([4.0, 3.0, 2.0]);
+    let beside = block.translate([4.0, 0.0, 0.0]);
+    let u = [[-8.0, -6.0], [8.0, -6.0], [8.0, 6.0], [1.0, 6.0], [1.0, -2.0], [-1.0, -2.0], [-1.0, 6.0], [-8.0, 6.0]];
+    let slots = Solid::cuboid([0.3, 20.0, 3.0]).repeat_centered([11, 1, 1], [2.0, 1.0, 1.0]);
+    let plate = Solid::cuboid([24.0, 24.0, 1.5]);
+    let bodies = [
+        ("comb", Solid::union_all(teeth, RFunction::MIN_MAX), of_tooth.map(|x| 20.0 * x)),
+        ("copies", tooth.repeat([12, 1, 1], [2.0, 1.0, 1.0]), of_tooth.map(|x| 12.0 * x)),
+        ("side by side", &block | &beside, [48.0, 2.0 * (24.0 + 6.0 + 16.0)]),
+        ("flush cut", (&block | &beside) - &beside, [24.0, 52.0]),
+        ("slots", &plate - &slots, [864.0 - 99.0, 1152.0 + 144.0 - 2.0 * 66.0 + 11.0 * 1.5 * 40.6]),
+        ("notch", Profile::polygon(u).extrude(1.5), [264.0, 352.0 + 1.5 * (32.0 + 24.0 + 16.0)]),
+    ];
+    for (name, body, [volume, area]) in &bodies {
+        for body in [body.clone(), turned(body)] {
+            let report = body.measure(0.5).unwrap();
+            assert!((report.volume - volume).abs() <= report.volume_error, "{name}: {report:?} {volume}");
+            assert!((report.area - area).abs() <= report.area_error + 1e-9, "{name}: {report:?} {area}");
+            assert!(report.volume_error < 1e-8 * volume && report.area_error < 1e-8 * area, "{name}: {report:?}");
+        }
+        let stretched = turned(body).scale_axes([1.0, 2.0, 0.5]).measure(0.5).unwrap();
+        assert!((stretched.volume - volume).abs() < 1e-8 * volume, "{name}: {stretched:?}");
+    }
+    // Boxes that touch have nothing in common, and no skin.
+    let none = turned(&(&block & &beside)).measure(1e-3).unwrap();
+    assert!(none.volume < 1e-9 && none.area < 1e-6, "{none:?}");
 }

@@ -43,6 +43,17 @@ pub struct Facets {
     pub rounding: f64,
 }
 
+/// What is between two planes.
+#[derive(Clone, Copy, Debug)]
+pub struct Layer {
+    /// A unit vector across them.
+    pub normal: DVec3,
+    /// Its product with points of the layer is from this
+    pub low: f64,
+    /// to this.
+    pub high: f64,
+}
+
 /// A [`Field`], erased to the evaluations that the engine runs.
 pub trait AnyField: Any + Debug + Send + Sync {
     /// What errors call it.
@@ -120,10 +131,20 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// Whether the value is concave, with slope at most 1.
     fn convex(&self) -> bool;
+    /// Whether the value is concave over a zone; `false` if it is convex, and nothing where neither
+    /// is known.
+    fn is_concave_over(&self, _zone: &Zone) -> Option<bool> {
+        self.convex().then_some(true)
+    }
     /// Planes at which slopes are without bound; those that pass a region of the leaf's frame, and
     /// perhaps more.
     fn creases(&self, _region: [Interval; 3]) -> Vec<Crease> {
         Vec::new()
+    }
+    /// Layers that hold all of the surface in a zone; nothing where that is not known, or there are
+    /// many.
+    fn layers(&self, _zone: &Zone) -> Option<Vec<Layer>> {
+        None
     }
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;

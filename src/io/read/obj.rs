@@ -2,7 +2,8 @@
 //!
 //! It takes v (with colours from 0 to 1 where these follow), vt, vn and f, polygons as triangles;
 //! other statements of the format are skipped, and what is none is an error. Normals and texture
-//! coordinates are kept if all faces have them. A vertex is told of before the faces that use it.
+//! coordinates are kept if all faces have them. Faces are looked at when all vertices are known, so
+//! that they may stand before these.
 
 use glam::{DVec3, Vec3};
 
@@ -17,9 +18,10 @@ use super::text::number;
 const JOINED: u8 = 0x0c;
 
 pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<Shape, ReadError> {
+    let text = joined(data);
     let mut object = Object::new(settings);
     let mut line = 1;
-    for text in joined(data).split(|byte| *byte == b'\n') {
+    for text in text.split(|byte| *byte == b'\n') {
         object.read(text, line)?;
         line += 1 + text.iter().filter(|byte| **byte == JOINED).count() as u64;
     }
@@ -101,7 +103,15 @@ struct Object<'a> {
     /// Of the corners, where all of them have some.
     corner_texture: Option<Vec<[[f32; 2]; 3]>>,
     corner_normals: Option<Vec<[Vec3; 3]>>,
-    polygon: Vec<[u32; 3]>,
+    faces: Vec<Face<'a>>,
+}
+
+/// A face as it is written.
+struct Face<'a> {
+    line: u64,
+    corners: &'a [u8],
+    /// How many positions, texture vertices and normals there were before it.
+    before: [usize; 3],
 }
 
 /// What a corner has none of.
@@ -118,11 +128,15 @@ impl<'a> Object<'a> {
             normals: Vec::new(),
             corner_texture: Some(Vec::new()),
             corner_normals: Some(Vec::new()),
-            polygon: Vec::new(),
+            faces: Vec::new(),
         }
     }
 
-    fn read(&mut self, text: &[u8], line: u64) -> Result<(), ReadError> {
+    fn counts(&self) -> [usize; 3] {
+        [self.shape.positions.len(), self.texture.len(), self.normals.len()]
+    }
+
+    fn read(&mut self, text: &'a [u8], line: u64) -> Result<(), ReadError> {
         let place = || FilePlace::Line(line);
         let text = text.split(|byte| *byte == b'#').next().unwrap_or_default();
         let mut words = text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
@@ -156,12 +170,10 @@ impl<'a> Object<'a> {
                 self.normals.push(normal);
             }
             Some(b"f") => {
-                self.polygon.clear();
-                for word in words {
-                    let corner = self.corner(word, line)?;
-                    self.polygon.push(corner);
-                }
-                self.push(line)?;
+                // One triangle each, at least.
+                self.settings.triangles(self.faces.len() + 1)?;
+                let corners = text.trim_ascii_start().strip_prefix(b"f").unwrap_or_default();
+                self.faces.push(Face { line, corners, before: self.counts() });
             }
             None => {}
             Some(word) if SKIPPED.contains(&word) => {}
@@ -174,37 +186,42 @@ impl<'a> Object<'a> {
     }
 
     /// Position, texture and normal of a corner, from 0.
-    fn corner(&self, word: &[u8], line: u64) -> Result<[u32; 3], ReadError> {
-        let counts = [self.shape.positions.len(), self.texture.len(), self.normals.len()];
+    fn corner(&self, word: &[u8], face: &Face<'_>) -> Result<[u32; 3], ReadError> {
+        let counts = self.counts();
         let mut corner = [NONE; 3];
         for (k, part) in word.split(|byte| *byte == b'/').enumerate() {
             if part.is_empty() && (1..3).contains(&k) {
                 continue;
             }
-            let count = counts.get(k).copied().unwrap_or_default();
+            let [count, before] = [counts.get(k).copied(), face.before.get(k).copied()];
+            let (count, before) = (count.unwrap_or_default(), before.unwrap_or_default());
             let index: Option<i64> = std::str::from_utf8(part).ok().and_then(|part| part.parse().ok());
-            // From the last one, where negative.
-            let index = index.map(|index| if index < 0 { count as i64 + index } else { index - 1 });
+            // From the last one before the face, where negative.
+            let index = index.map(|index| if index < 0 { before as i64 + index } else { index - 1 });
             match index {
                 Some(index) if k < 3 && (0..count as i64).contains(&index) => corner[k] = index as u32,
                 _ => {
                     let what = ["vertex", "texture vertex", "normal"].get(k).unwrap_or(&"part of a corner");
-                    let expected = match count {
-                        0 => format!("a {what} that is told of before, of which there is none"),
-                        _ => format!("a {what} from 1 to {count}, or from -1 to -{count}"),
+                    let expected = match [count, before] {
+                        [0, _] => format!("a {what} of the file, which has none"),
+                        [_, 0] => format!("a {what} from 1 to {count}"),
+                        _ => format!("a {what} from 1 to {count}, or from -1 to -{before}"),
                     };
-                    return Err(ReadError::content(FilePlace::Line(line), expected, shown(word)));
+                    return Err(ReadError::content(FilePlace::Line(face.line), expected, shown(word)));
                 }
             }
         }
         Ok(corner)
     }
 
-    fn push(&mut self, line: u64) -> Result<(), ReadError> {
-        let corners = &self.polygon;
+    fn push(&mut self, face: &Face<'_>, corners: &mut Vec<[u32; 3]>) -> Result<(), ReadError> {
+        corners.clear();
+        for word in face.corners.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
+            corners.push(self.corner(word, face)?);
+        }
         if corners.len() < 3 {
             let found = format!("{} corners", corners.len());
-            return Err(ReadError::content(FilePlace::Line(line), "f and at least 3 corners", found));
+            return Err(ReadError::content(FilePlace::Line(face.line), "f and at least 3 corners", found));
         }
         self.settings.triangles(self.shape.triangles.len() + corners.len() - 2)?;
         if corners.iter().any(|corner| corner[1] == NONE) {
@@ -232,6 +249,10 @@ impl<'a> Object<'a> {
     }
 
     fn finish(mut self) -> Result<Shape, ReadError> {
+        let mut corners = Vec::new();
+        for face in std::mem::take(&mut self.faces) {
+            self.push(&face, &mut corners)?;
+        }
         let has_faces = !self.shape.triangles.is_empty();
         self.shape.corner_texture = self.corner_texture.filter(|_| has_faces);
         self.shape.corner_normals = self.corner_normals.filter(|_| has_faces);

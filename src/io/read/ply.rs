@@ -1,10 +1,11 @@
 //! PLY, as text and binary in both orders: see the [writer](crate::io::write_ply).
 //!
 //! Of `vertex` it takes x, y, z, nx, ny, nz and red, green, blue, alpha; of `face` the list of
-//! vertices, colours and owner; of any type. Other elements and properties are skipped. Polygons
-//! become triangles: fans, where faces stand before the vertices.
+//! vertices, colours and owner; of `tristrips` the list of vertices; of any type. Other elements and
+//! properties are skipped. Polygons become triangles: fans, where faces stand before the vertices.
 
 mod header;
+mod strips;
 
 use glam::{DVec3, Vec3};
 
@@ -30,6 +31,7 @@ pub(super) fn read(data: &[u8], settings: &Limits<'_>) -> Result<Shape, ReadErro
         match &element.name[..] {
             "vertex" => read_vertices(element, &mut values, settings, &mut shape)?,
             "face" => read_faces(element, &mut values, settings, vertices, &mut shape)?,
+            "tristrips" => strips::read(element, &mut values, settings, vertices, &mut shape)?,
             _ => skip(element, &mut values, settings)?,
         }
     }
@@ -162,6 +164,30 @@ fn read_vertices(
     Ok(())
 }
 
+fn is_corners(property: &Property) -> bool {
+    matches!(&property.name[..], "vertex_indices" | "vertex_index")
+}
+
+fn expect_corners(element: &Element, what: &str) -> Result<(), ReadError> {
+    if element.properties.iter().any(is_corners) {
+        return Ok(());
+    }
+    let expected = format!("a property list vertex_indices of the {what}");
+    Err(ReadError::content(FilePlace::Line(element.line), expected, "none"))
+}
+
+/// Puts what triangles of an element carry behind what those before it did: where one has nothing,
+/// the default.
+fn carry<T: Clone>(all: &mut Option<Vec<T>>, own: Option<Vec<T>>, counts: [usize; 2], default: T) {
+    if all.is_none() && own.is_none() {
+        return;
+    }
+    let all = all.get_or_insert_default();
+    all.resize(counts[0], default.clone());
+    all.extend(own.into_iter().flatten());
+    all.resize(counts[1], default);
+}
+
 fn read_faces(
     element: &Element,
     values: &mut Values<'_>,
@@ -169,16 +195,13 @@ fn read_faces(
     vertices: u64,
     shape: &mut Shape,
 ) -> Result<(), ReadError> {
-    let is_corners = |property: &Property| matches!(&property.name[..], "vertex_indices" | "vertex_index");
     let has = |names: &[&str]| element.properties.iter().any(|property| names.contains(&&property.name[..]));
-    if !element.properties.iter().any(is_corners) {
-        let place = FilePlace::Line(element.line);
-        return Err(ReadError::content(place, "a property list vertex_indices of the faces", "none"));
-    }
+    expect_corners(element, "faces")?;
     let has_colors = RED[..3].iter().all(|names| has(names));
     let has_owners = has(&["owner"]);
     let (mut colors, mut owners) = (Vec::new(), Vec::new());
     let mut polygon = Vec::new();
+    let before = shape.triangles.len();
     for _ in 0..element.count {
         let start = values.place();
         let (mut paint, mut owner) = ([255; 4], 0);
@@ -225,7 +248,8 @@ fn read_faces(
             }
         });
     }
-    shape.corner_colors = has_colors.then_some(colors);
-    shape.owners = has_owners.then_some(owners);
+    let counts = [before, shape.triangles.len()];
+    carry(&mut shape.corner_colors, has_colors.then_some(colors), counts, [[255; 4]; 3]);
+    carry(&mut shape.owners, has_owners.then_some(owners), counts, 0);
     Ok(())
 }

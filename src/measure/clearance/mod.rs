@@ -6,6 +6,7 @@
 //! how deep, and the volume of what the solids have in common.
 
 mod apart;
+mod depth;
 mod doubts;
 mod levels;
 mod missed;
@@ -16,11 +17,13 @@ use glam::DVec3;
 use rvachev_field::Patches;
 
 use self::apart::{Found, search};
+use self::depth::depth;
 use self::doubts::Known;
 use self::missed::{Inside, inside};
-use self::overlap::{Entry, common, depth, entry, within};
+use self::overlap::{Entry, common, entry, within};
+use super::enclosed::Enclosed;
 use super::exact;
-use super::integral::integral;
+use super::integral::{Effort, integral};
 use crate::distance::{compiled_with, surface_with};
 use crate::error::PrepareError;
 use crate::eval::{Accuracy, Compiled, Program, Surface};
@@ -31,9 +34,9 @@ use rvachev_num::figures;
 /// Pieces that are looked at before it is asked whether to go on.
 const AT_ONCE: usize = 256;
 
-/// How far the volume of an overlap may be off, as a part of it, and in how many cells it is found.
-const VOLUME: f64 = 0.02;
-const CELLS: usize = 1 << 14;
+/// How the volume of an overlap is found: in cells that are large at first, as most of them have one
+/// of the surfaces only.
+const VOLUME: Effort = Effort { tolerance: 0.02, first: 4.0, most: 1 << 14 };
 
 /// How far two solids are apart, or how much they overlap: see [`Solid::clearance`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,8 +118,9 @@ impl Solid {
     /// solid at rest, so that parts of an assembly are not measured anew in each position. After
     /// that a clearance takes milliseconds where one place is nearest and of meshes and extruded
     /// polygons, some tenths of a second where a gap is even all over and where meshes touch over
-    /// thousands of triangles or overlap, and seconds between threads and the like. The volume of
-    /// an overlap is found as by [`measure`](Solid::measure).
+    /// thousands of triangles or overlap, and seconds between threads and the like. Triangles of a
+    /// mesh that lie in one plane are taken together, if nearly all do. The volume of an overlap is
+    /// found as by [`measure`](Solid::measure).
     ///
     /// # Errors
     /// What is wrong with a solid, that it has no finite box, that it is so thin that nothing of
@@ -223,7 +227,10 @@ impl Solid {
         let at_most = depths.iter().fold(slack, |most, [depth, more]| most.max(depth + more));
         let both = self & other;
         let programs = compiled_with(&both, &to_compile)?;
-        let found = integral(&programs.surface, &both.finite_bounds()?, VOLUME, CELLS, &to_integrate)?;
+        let known = [exact::leaf(self, &to_compile)?, exact::leaf(other, &to_compile)?];
+        let enclosed = Enclosed::known(&programs.surface, known.iter().flatten());
+        let bounds = both.finite_bounds()?;
+        let found = integral((&programs.surface, enclosed), &bounds, VOLUME, &to_integrate)?;
         Ok(Clearance {
             depth: deepest,
             depth_error: at_most - deepest + slack,

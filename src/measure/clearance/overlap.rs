@@ -1,4 +1,4 @@
-//! Whether one solid's surface goes into another solid, and how deep.
+//! Whether one solid's surface goes into another solid.
 //!
 //! ```text
 //!     -----.           .-----
@@ -33,15 +33,6 @@ const SMALL: f64 = 4.0;
 /// After so many pieces the work ends, with what is known then.
 const MOST: usize = 1 << 17;
 
-/// So many points are asked for the depth at most.
-const DEPTHS: usize = 1 << 14;
-
-/// How near the depth is found, as a part of it.
-const RELATIVE: f64 = 0.01;
-
-/// So many patches that follow each other are looked at together at first.
-const SPAN: usize = 64;
-
 /// More of them are not compared at once.
 const TOGETHER: usize = 512;
 
@@ -67,7 +58,7 @@ pub(super) fn common(from: &Side<'_>, to: &Side<'_>, slack: f64, p: DVec3) -> Op
 
 /// Whether a piece of `from` that is moved along its normal by this is outside of the other solid:
 /// then no point of it is deeper in that.
-fn is_outside(piece: &Piece, from: &Side<'_>, to: &Side<'_>, by: f64) -> bool {
+pub(super) fn is_outside(piece: &Piece, from: &Side<'_>, to: &Side<'_>, by: f64) -> bool {
     let (patches, others) = (&from.surface.patches, &to.surface.patches);
     let moved = piece.moved(by);
     let rounding = piece.off(patches) + from.fineness() + to.fineness();
@@ -116,6 +107,13 @@ fn near(
             if !runs.bounds(*block).inflate(slack).intersects(&bounds) {
                 return ControlFlow::Continue(None);
             }
+            let own = patches.point(runs.patches(*block).start, [0.0; 2]);
+            // Of large blocks a point may tell at once.
+            if runs.patches(*block).len() > TOGETHER
+                && let Some(found) = common(from, to, slack, own)
+            {
+                return ControlFlow::Break(found);
+            }
             let is_far = || others.apart(&Zone::of_bounds(runs.bounds(*block)), 2.0 * slack).is_some();
             if distance(others, centre) <= radius + 2.0 * slack && !is_far() {
                 match by.and_then(|by| span_outside(runs.patches(*block), from, to, by)) {
@@ -126,7 +124,6 @@ fn near(
             } else if to.program.value(centre) <= 0.0 {
                 return ControlFlow::Continue(None);
             }
-            let own = patches.point(runs.patches(*block).start, [0.0; 2]);
             // Of a sheet it may not be found here: then each patch is looked at.
             common(from, to, slack, own).map_or(ControlFlow::Continue(Some(*block)), ControlFlow::Break)
         };
@@ -235,87 +232,6 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         pieces = open.iter().flat_map(|piece| piece.divided(patches, |_| 0.0)).collect();
     }
     Ok(Entry::AtMost(left))
-}
-
-/// How deep the surface of `from` goes into the other solid: the deepest point that was found, at
-/// least 0, and how much deeper there may be one.
-pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<[f64; 2], Cancelled> {
-    let (patches, others) = (&from.surface.patches, &to.surface.patches);
-    let bounds = others.bounds();
-    let below = |p: DVec3| {
-        let distance = distance(others, p);
-        if distance > to.fineness() && to.program.value(p) > 0.0 { distance } else { -distance }
-    };
-    let mut best = 0.0;
-    // Patches that follow each other are near each other: of many a point of the middle one tells.
-    let spans = (0..patches.len()).step_by(SPAN).map(|at| at..(at + SPAN).min(patches.len()));
-    let mut near: Vec<Range<usize>> = spans.collect();
-    let mut pieces: Vec<Piece> = Vec::new();
-    let [to_open, to_divide] = run.stages([0.4, 0.6]);
-    let mut levels = Levels::new(&to_open);
-    while !near.is_empty() {
-        let look = |span: &Range<usize>| {
-            let at = patches.point((span.start + span.end) / 2, [0.0; 2]);
-            let reach = span.clone().map(|n| Piece::whole(patches, n).reach_from(at)).fold(0.0, f64::max);
-            if !bounds.inflate(reach).contains(at) {
-                return None;
-            }
-            let deep = below(at);
-            let is_out = || deep <= slack && span_outside(span.clone(), from, to, slack) == Some(true);
-            (deep + reach > slack && !is_out()).then_some((deep, reach))
-        };
-        let mut found = Vec::with_capacity(near.len());
-        for chunk in levels.chunks(&near, AT_ONCE) {
-            found.par_extend(chunk?.par_iter().map(look));
-        }
-        best = found.iter().flatten().fold(best, |best: f64, (number, _)| best.max(*number));
-        let enough = best + slack.max(RELATIVE * best);
-        let open = near.into_iter().zip(found).filter(|(_, found)| found.is_some_and(|(d, reach)| d + reach > enough));
-        let open: Vec<Range<usize>> = open.map(|(span, _)| span).collect();
-        near = Vec::new();
-        for span in open {
-            if span.len() == 1 {
-                pieces.push(Piece::whole(patches, span.start));
-            } else {
-                let middle = (span.start + span.end) / 2;
-                near.extend([span.start..middle, middle..span.end]);
-            }
-        }
-        levels.down()?;
-    }
-    let mut pieces: Vec<Piece> = pieces.into_par_iter().map(|piece| piece.numbered(below)).collect();
-    let mut asked = pieces.len();
-    let mut levels = Levels::new(&to_divide);
-    loop {
-        best = pieces.iter().flat_map(|piece| piece.numbers).fold(best, f64::max);
-        let enough = best + slack.max(RELATIVE * best);
-        // Depths change by as much as points are apart at most, and the surface is passed on the
-        // way out of its box.
-        let at_most = |piece: &Piece| {
-            let corner = piece.numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let off = piece.off(patches);
-            let own = Bounds::from_points(piece.points).inflate(off);
-            let out = (own.max - bounds.min).min(bounds.max - own.min).min_element();
-            (corner + piece.longest_side() / 3f64.sqrt() + off).min(out)
-        };
-        // What is outside when it is moved outwards by what does not count is no deeper than that:
-        // of faces that fall together it is told so.
-        let is_out =
-            |piece: &Piece| piece.numbers.iter().all(|deep| *deep <= slack) && is_outside(piece, from, to, slack);
-        run.check()?;
-        pieces = pieces.into_par_iter().filter(|piece| at_most(piece) > enough && !is_out(piece)).collect();
-        asked += 4 * pieces.len();
-        if pieces.is_empty() || asked > DEPTHS {
-            let deepest = pieces.iter().map(at_most).fold(enough, f64::max);
-            return Ok([best, deepest - best]);
-        }
-        let mut next = Vec::with_capacity(4 * pieces.len());
-        for chunk in levels.chunks(&pieces, 16 * AT_ONCE) {
-            next.par_extend(chunk?.par_iter().flat_map_iter(|piece| piece.divided(patches, below)));
-        }
-        levels.down()?;
-        pieces = next;
-    }
 }
 
 #[cfg(test)]

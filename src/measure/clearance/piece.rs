@@ -61,11 +61,6 @@ impl Piece {
         (0..3).map(|k| self.points[k].distance(self.points[(k + 1) % 3])).fold(0.0, f64::max)
     }
 
-    /// No point of it is farther from this one.
-    pub(super) fn reach_from(&self, p: DVec3) -> f64 {
-        self.points[0].distance(p) + 2.0 * self.longest_side()
-    }
-
     /// How far it is off its triangle at most: a patch is quadratic, so that it is four thirds of
     /// how far it is in the middle of a side.
     pub(super) fn off(&self, patches: &Patches) -> f64 {

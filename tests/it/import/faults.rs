@@ -210,3 +210,66 @@ fn sparse_elements_are_those_of_the_accessor() {
         assert!(message.contains("sparse indices that rise, below the count"), "{message}");
     }
 }
+
+/// Faces of OBJ may stand before the vertices that they are of; negative numbers count from those
+/// before the face.
+#[test]
+fn faces_before_their_vertices_are_read() {
+    let first =
+        b"f 1//1 2//1 3//1\nv 0 0 0\nv 1 0 0\nf -2//-1 2//1 4//1\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf 1//1 3//1 4//1\n";
+    let message = error(FileFormat::Obj, first);
+    assert!(message.contains("line 4: expected a normal from 1 to 1, found \"-2//-1\""), "{message}");
+    let right = String::from_utf8_lossy(first).replace("-2//-1", "-2//1");
+    let mesh = read(FileFormat::Obj, right.as_bytes());
+    assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 1, 3], [0, 2, 3]]);
+    assert_eq!(mesh.normals().map(|normals| normals.len()), Some(4));
+    let message = error(FileFormat::Obj, b"f 1 2 4\nv 0 0 0\nv 1 0 0\nv 1 1 0\n");
+    assert_eq!(message, "line 1: expected a vertex from 1 to 3, found \"4\"");
+    assert_eq!(
+        error(FileFormat::Obj, b"f 1 2 4\n"),
+        "line 1: expected a vertex of the file, which has none, found \"1\""
+    );
+    // What is not convex is divided by where its corners are.
+    let arrow = b"f 1 2 3 4\nv 0 0 0\nv 2 1 0\nv 0 2 0\nv 1 1 0\n";
+    assert!((read(FileFormat::Obj, arrow).area() - 1.0).abs() < 1e-6);
+    // So many faces are too many, wherever the vertices are.
+    let settings = LoadSettings { most_triangles: 2, ..LoadSettings::default() };
+    let many = Mesh::read(FileFormat::Obj, &b"f 1 2 3\nf 1 2 3\nf 1 2 3\n"[..], &settings).unwrap_err().to_string();
+    assert!(many.contains("most_triangles"), "{many}");
+}
+
+#[test]
+fn strips_of_ply_are_read() {
+    let head = |count: u32, list: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n\
+             element tristrips {count}\nproperty list {list}\nend_header\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n"
+        )
+    };
+    // As the scans of Stanford have them: one list, with -1 behind each strip.
+    let one = head(1, "int int vertex_indices") + "12 0 2 1 3 -1 2 4 3 5 5 0 -1\n";
+    let mesh = read(FileFormat::Ply, one.as_bytes());
+    assert_eq!(mesh.triangles(), [[0, 2, 1], [1, 2, 3], [2, 4, 3], [3, 4, 5]]);
+    assert!((mesh.area() - 2.0).abs() < 1e-6);
+    let two = head(2, "uchar int vertex_index") + "4 0 2 1 3\n4 2 4 3 5\n";
+    assert_eq!(read(FileFormat::Ply, two.as_bytes()).triangles(), mesh.triangles());
+    // Beside faces that carry colours.
+    let faces = "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\n\
+                 property uchar blue\nend_header";
+    let both = head(1, "uchar int vertex_index").replace("end_header", faces) + "4 0 2 1 3\n3 2 4 3 9 8 7\n";
+    let colored = read(FileFormat::Ply, both.as_bytes());
+    assert_eq!(colored.triangles().len(), 3);
+    let colors = colored.corner_colors().expect("those of the face");
+    assert_eq!([colors[0], colors[2]], [[[255; 4]; 3], [[9, 8, 7, 255]; 3]]);
+    let message = error(FileFormat::Ply, (head(1, "int int vertex_indices") + "3 0 2 6\n").as_bytes());
+    assert_eq!(message, "line 16: expected a vertex from 0, of 6 vertices, or -1 behind a strip, found 6");
+    let message = error(FileFormat::Ply, (head(1, "int int vertex_indices") + "3 0 -2 1\n").as_bytes());
+    assert!(message.ends_with("found -2"), "{message}");
+    let message = error(FileFormat::Ply, (head(1, "int int corners") + "3 0 1 2\n").as_bytes());
+    assert!(message.contains("line 7: expected a property list vertex_indices of the tristrips"), "{message}");
+    let message = error(FileFormat::Ply, (head(1, "int int vertex_indices") + "400000000 0 1 2\n").as_bytes());
+    assert!(message.contains("the end of the file"), "{message}");
+    let settings = LoadSettings { most_triangles: 3, ..LoadSettings::default() };
+    let many = Mesh::read(FileFormat::Ply, one.as_bytes(), &settings).unwrap_err().to_string();
+    assert!(many.contains("most_triangles"), "{many}");
+}

@@ -117,6 +117,10 @@ fn originals() -> Vec<Original> {
     let text = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
         property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n\
         property list uchar int vertex_indices\nend_header\n0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n3 0 1 2\n";
+    let strips = b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n\
+        9 0 1 2 3 -1 3 2 1 -1\n";
+    let late = b"f 1/1/1 2/2/1 -1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3//1 -2//1 3//1\nvt 0 0\nvt 1 0\nvn 0 0 1\n";
     let big = b"ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty char x\nproperty char y\n\
         property char z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n\
         \x00\x00\x00\x01\x00\x00\x00\x01\x00\x03\x00\x01\x02";
@@ -130,7 +134,9 @@ fn originals() -> Vec<Original> {
         (FileFormat::Obj, bytes(|out| write_obj(&mesh, &settings, out))),
         (FileFormat::Ply, bytes(|out| write_ply(&mesh, out))),
         (FileFormat::Ply, bytes(|out| write_ply_points(&cloud, out))),
+        (FileFormat::Obj, late.to_vec()),
         (FileFormat::Ply, text.to_vec()),
+        (FileFormat::Ply, strips.to_vec()),
         (FileFormat::Ply, big.to_vec()),
         (FileFormat::Glb, bytes(|out| write_glb(&mesh, &settings, out))),
         (FileFormat::ThreeMf, archive),

@@ -21,7 +21,7 @@ const PATIENCE: usize = 512;
 const MANY: usize = 96;
 
 /// A zone in the frame of the patches.
-struct Seen {
+pub(super) struct Seen {
     low: DVec3,
     high: DVec3,
     centre: DVec3,
@@ -33,7 +33,7 @@ struct Seen {
 
 impl Seen {
     /// How far a box is, at least.
-    fn box_gap(&self, low: DVec3, high: DVec3) -> f64 {
+    pub(super) fn box_gap(&self, low: DVec3, high: DVec3) -> f64 {
         (low - self.high).max(self.low - high).max(DVec3::ZERO).length()
     }
 
@@ -59,7 +59,7 @@ impl Seen {
 }
 
 impl Patches {
-    fn seen(&self, zone: &Zone) -> Seen {
+    pub(super) fn seen(&self, zone: &Zone) -> Seen {
         let unit = self.frame.unit;
         let [x, y, z] = zone.hull();
         let [a, b, c] = [zone.axes.x_axis, zone.axes.y_axis, zone.axes.z_axis];
@@ -141,7 +141,7 @@ impl Patches {
     }
 
     /// How far a patch is, at least.
-    fn patch_apart(&self, seen: &Seen, at: usize) -> f64 {
+    pub(super) fn patch_apart(&self, seen: &Seen, at: usize) -> f64 {
         let Some((face, sides)) = self.at(at) else { return 0.0 };
         let [a, e, f] = [double(face.a), double(sides.e), double(sides.f)];
         let (b, c) = (a + e, a + f);

@@ -37,6 +37,7 @@ mod double;
 mod face;
 mod hierarchy;
 mod inscribed;
+mod layers;
 #[cfg(test)]
 mod leaf_tests;
 mod narrow;
@@ -150,6 +151,15 @@ impl Patches {
     pub fn nearest(&self, p: DVec3) -> Option<Foot> {
         let best = self.search_one(self.frame.into_local(p).to_array());
         self.foot_on(best.which as usize, p)
+    }
+
+    /// The nearest point to one, and how far its patch is from the farthest of other points; nothing
+    /// if there are no patches.
+    pub fn nearest_with(&self, p: DVec3, others: &[DVec3]) -> Option<(Foot, f64)> {
+        let at = self.search_one(self.frame.into_local(p).to_array()).which as usize;
+        let foot = self.foot_on(at, p)?;
+        let square = |p: &DVec3| self.closest(at, self.frame.into_local(*p).to_array()).square;
+        Some((foot, others.iter().map(square).fold(0.0, f64::max).sqrt() * self.frame.unit))
     }
 
     /// The nearest point of one patch, counted as the hierarchy sorts them.

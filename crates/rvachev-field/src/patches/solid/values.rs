@@ -9,8 +9,8 @@ use super::MeshLeaf;
 use super::rim::Membrane;
 use crate::kernel::{Element, distinct, repeat};
 use crate::{
-    AnyField, Bounds, COORDINATE_LIMIT, Chunk, Dual, Facets, Interval, ParamError, Placement, VALUE_LIMIT, Way, Zone,
-    bits, steep_slopes,
+    AnyField, Bounds, COORDINATE_LIMIT, Chunk, Dual, Facets, Interval, Layer, ParamError, Placement, VALUE_LIMIT, Way,
+    Zone, bits, steep_slopes,
 };
 use rvachev_num::symbol::Symbol;
 
@@ -160,6 +160,13 @@ impl AnyField for MeshLeaf {
 
     fn convex(&self) -> bool {
         false
+    }
+
+    fn layers(&self, zone: &Zone) -> Option<Vec<Layer>> {
+        if self.is_open() || !zone.is_finite() {
+            return None;
+        }
+        self.patches().layers(zone, self.distance.slack(zone, 0.0))
     }
 
     fn is_formula(&self) -> bool {

@@ -392,6 +392,10 @@ impl AnyField for Polygon {
         false
     }
 
+    fn is_concave_over(&self, zone: &Zone) -> Option<bool> {
+        near::is_concave(&self.border().near(&Patch::of_zone(zone)?)?)
+    }
+
     fn axes(&self) -> [bool; 3] {
         [true, true, false]
     }

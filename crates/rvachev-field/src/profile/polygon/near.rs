@@ -188,6 +188,29 @@ pub(super) fn rises(edges: &[Edge], ways: &[Way]) -> u8 {
     bits(ways, |way| !edges.is_empty() && edges.iter().all(|edge| across(edge, way)))
 }
 
+/// Whether the signed distance is concave where only these edges can be nearest, `false` if it is
+/// convex: of one that is a line, of two either where each is within the other's line, or beyond.
+///
+/// ```text
+///      inside            \_            Their region is where both lines leave it, or where one does.
+///     ________    ________\ outside
+///             \     inside
+/// ```
+pub(super) fn is_concave(edges: &[Edge]) -> Option<bool> {
+    match edges {
+        [_] => Some(true),
+        [a, b] => {
+            let height = |edge: &Edge, p: DVec2| edge.along.perp_dot(p - edge.start);
+            let shared = |edge: &Edge, p: DVec2| p == edge.start || p == edge.end;
+            let ends = [(a, b.start), (a, b.end), (b, a.start), (b, a.end)];
+            let heights = ends.map(|(edge, p)| if shared(edge, p) { 0.0 } else { height(edge, p) });
+            let are = |is: fn(&f64) -> bool| heights.iter().all(is);
+            if are(|height| *height >= 0.0) { Some(true) } else { are(|height| *height <= 0.0).then_some(false) }
+        }
+        _ => None,
+    }
+}
+
 /// By how much points may lie outside of the zone that they are said to be in: lanes round
 /// their coordinates.
 pub(super) fn margin(patch: &Patch, reach: f64) -> f64 {
@@ -232,8 +255,17 @@ impl AnyField for NearEdges {
         true
     }
 
+    fn is_faceted(&self) -> bool {
+        true
+    }
+
     fn convex(&self) -> bool {
         false
+    }
+
+    fn is_concave_over(&self, zone: &Zone) -> Option<bool> {
+        let patch = Patch::of_zone(zone)?;
+        is_concave(&nearest_over(&patch, self.edges().copied(), margin(&patch, self.0.reach)))
     }
 
     fn axes(&self) -> [bool; 3] {

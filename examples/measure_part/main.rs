@@ -13,6 +13,8 @@
 //! measures a pot that it writes first. Lengths are millimetres: of files that do not say what
 //! theirs are, `--unit inch` (or micron, millimeter, centimeter, foot, meter) does.
 
+mod json;
+
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -80,20 +82,6 @@ fn figures(x: f64) -> String {
     if (0..=9).contains(&digits) { format!("{x:.*}", digits as usize) } else { format!("{x:.3e}") }
 }
 
-/// What is told of a part, as one line of JSON.
-fn json(mesh: &Mesh, thickness: &ThicknessReport) -> String {
-    let number = |x: f64| if x.is_finite() { x.to_string() } else { "null".into() };
-    let [x, y, z] = thickness.at.to_array().map(number);
-    format!(
-        r#"{{"volume": {}, "area": {}, "components": {}, "closed": {}, "least_thickness": {}, "at": [{x}, {y}, {z}]}}"#,
-        number(mesh.volume()),
-        number(mesh.area()),
-        mesh.components().len(),
-        mesh.open_edges().is_closed(),
-        number(thickness.least),
-    )
-}
-
 /// A picture of the part, red where it is thinnest and blue where it is thick, with a legend.
 fn picture(solid: &Solid, thickness: &ThicknessReport, path: &Path) -> Result<(), Box<dyn Error>> {
     let finite = thickness.thicknesses().iter().filter(|thickness| thickness.is_finite());
@@ -128,7 +116,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let path = file.with_extension("thickness.png");
     picture(&solid, &thickness, &path)?;
     if arguments.is_json {
-        println!("{}", json(&mesh, &thickness));
+        println!("{}", json::line(&mesh, &thickness));
         return Ok(());
     }
     let sides = |size: DVec3| size.to_array().map(figures).join(" x ");
