@@ -170,7 +170,7 @@ pub(super) fn roundoff(program: &Program, reach: f64) -> f64 {
 }
 
 /// Runs `work` with scratch memory that nobody else on this thread is using.
-pub(super) fn with_evaluator<T>(work: impl FnOnce(&mut Evaluator) -> T) -> T {
+pub(crate) fn with_evaluator<T>(work: impl FnOnce(&mut Evaluator) -> T) -> T {
     thread_local! {
         static SPARE: RefCell<Vec<Evaluator>> = const { RefCell::new(Vec::new()) };
     }

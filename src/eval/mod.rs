@@ -79,7 +79,7 @@ pub(crate) use bend::Bend;
 pub(crate) use bracket::Bracket;
 pub(crate) use bytes::Counted;
 pub(crate) use compile::{Compiled, compile};
-pub(crate) use composite::as_leaf;
+pub(crate) use composite::{as_leaf, with_evaluator};
 pub(crate) use crossing::distance;
 pub(crate) use partial::Partial;
 pub(crate) use point::limited;

@@ -10,9 +10,9 @@
 //! What a value on the chord says is a guess: the root of the one leaf is taken only if there, in
 //! single precision and beyond its rounding, every other leaf leaves it the decision: it is
 //! outside, for a union, or inside, for an intersection. The values on the chord show that of most
-//! edges, as the way from there to the root is short. Edges where another does not are given to all
-//! leaves together. A leaf without a root on an edge seems to jump there: only those that are asked
-//! together tell jumps.
+//! edges, as the way from there to the root is short; leaves whose values may change by more than
+//! the way are asked again. Edges where another does not are given to all leaves together. A leaf
+//! without a root on an edge seems to jump there: only those that are asked together tell jumps.
 //!
 //! The root of one leaf is one of all leaves then: near it the value is that leaf's.
 
@@ -42,6 +42,10 @@ pub(super) struct Deciders {
     best: Vec<f32>,
     second: Vec<f32>,
     leaf: Vec<u32>,
+    /// Places that a leaf is asked for there, and the largest value of others than the one that
+    /// decides.
+    asked: Vec<u32>,
+    others: Vec<f32>,
     /// By leaf, where its edges end among the places.
     ends: Vec<u32>,
     /// Edges for searches: their places in the group, themselves, where to begin, their roots.
@@ -102,7 +106,7 @@ impl Deciders {
         self.leaf.clear();
         self.leaf.resize(edges.len(), 0);
         for (number, rival) in (0..).zip(rivals) {
-            self.evaluate(evaluator, rival, BESIDE * lattice.step());
+            evaluate(evaluator, rival, BESIDE * lattice.step(), &self.points, &mut self.value);
             let known = self.best.iter_mut().zip(&mut self.second).zip(&mut self.leaf);
             for (((best, second), leaf), &value) in known.zip(&self.value) {
                 let value = sign * value;
@@ -142,38 +146,35 @@ impl Deciders {
         roots: &[Root],
     ) {
         let sure = -tape.roundoff();
-        // By how much a value may change on the way along an edge.
-        let rise = if tape.is_gentle() { lattice.step() } else { f64::INFINITY };
+        let is_rough: Vec<bool> = rivals.iter().map(|rival| !rival.is_gentle()).collect();
+        let rough = is_rough.iter().filter(|is_rough| **is_rough).count();
+        let (seen, second, leaf) = (&self.seen, &self.second, &self.leaf);
+        // Whether another leaf may decide there whose value changes by no more than the way.
+        let is_near = |n: usize| {
+            let way = (roots[n].t - seen[n]).abs() * lattice.step();
+            let is_sure = f64::from(second[n]) + way < sure;
+            !is_sure
+        };
+        let is_open = |n: usize| is_near(n) || rough > usize::from(is_rough[leaf[n] as usize]);
         self.places.clear();
-        self.places.extend((0..edges.len() as u32).filter(|&n| {
-            let n = n as usize;
-            let way = (roots[n].t - self.seen[n]).abs();
-            let is_sure = f64::from(self.second[n]) + way * rise < sure;
-            !is_sure || roots[n].is_off
-        }));
-        let there = self.places.iter().map(|&n| (&edges[n as usize], roots[n as usize].t));
-        place(tape, lattice, there, &mut self.points);
-        self.second.clear();
-        self.second.resize(self.places.len(), f32::NEG_INFINITY);
+        self.places.extend((0..edges.len() as u32).filter(|&n| roots[n as usize].is_off || is_open(n as usize)));
+        self.others.clear();
+        self.others.extend(self.places.iter().map(|&n| if roots[n as usize].is_off { 0.0 } else { f32::NEG_INFINITY }));
         for (number, rival) in (0..).zip(rivals) {
-            self.evaluate(evaluator, rival, BESIDE * lattice.step());
-            for ((second, &n), &value) in self.second.iter_mut().zip(&self.places).zip(&self.value) {
-                let value = if self.leaf[n as usize] == number { f32::NEG_INFINITY } else { sign * value };
-                *second = second.max(value);
+            let is_asked =
+                |n: usize| leaf[n] != number && !roots[n].is_off && (is_rough[number as usize] || is_near(n));
+            self.asked.clear();
+            self.asked.extend((0..).zip(&self.places).filter(|(_, n)| is_asked(**n as usize)).map(|(at, _)| at));
+            let there = self.asked.iter().map(|&at| self.places[at as usize] as usize);
+            place(tape, lattice, there.map(|n| (&edges[n], roots[n].t)), &mut self.points);
+            evaluate(evaluator, rival, BESIDE * lattice.step(), &self.points, &mut self.value);
+            for (&at, &value) in self.asked.iter().zip(&self.value) {
+                let other = &mut self.others[at as usize];
+                *other = other.max(sign * value);
             }
         }
-        let mut others = self.second.iter();
-        self.places.retain(|&n| {
-            let second = others.next().copied().unwrap_or(f32::INFINITY);
-            f64::from(second) >= sure || roots[n as usize].is_off
-        });
-    }
-
-    /// The values of a leaf at the points, right within the band: who decides is near the surface.
-    fn evaluate(&mut self, evaluator: &mut Evaluator, rival: &Tape, band: f64) {
-        let [x, y, z] = &self.points;
-        self.value.resize(x.len(), 0.0);
-        evaluator.values_within(rival, band, [x, y, z], &mut self.value);
+        let mut others = self.others.iter();
+        self.places.retain(|_| others.next().is_none_or(|other| f64::from(*other) >= sure));
     }
 
     /// The roots of some of the edges in `places`.
@@ -201,6 +202,12 @@ impl Deciders {
             out[n as usize] = *root;
         }
     }
+}
+
+/// The values of a leaf at points, right within the band: who decides is near the surface.
+fn evaluate(evaluator: &mut Evaluator, rival: &Tape, band: f64, [x, y, z]: &[Vec<f32>; 3], out: &mut Vec<f32>) {
+    out.resize(x.len(), 0.0);
+    evaluator.values_within(rival, band, [x, y, z], out);
 }
 
 /// Points on edges, relative to the tape's origin.

@@ -6,7 +6,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::eval::{Evaluator, Gradients, Program, Region, Tape};
+use crate::eval::{Evaluator, Gradients, Program, Region, Tape, with_evaluator};
 use crate::{Bounds, Cancelled, Run};
 
 /// After so many points it is seen whether the work may go on, where each takes long.
@@ -87,9 +87,9 @@ impl Slopes<'_> {
         let tasks = self.tasks(points, run)?;
         let found: Result<Vec<Vec<Slope>>, Cancelled> = tasks
             .par_iter()
-            .map_init(Evaluator::new, |evaluator, task| {
+            .map(|task| {
                 run.check()?;
-                self.of_task(evaluator, task, points, run)
+                with_evaluator(|evaluator| self.of_task(evaluator, task, points, run))
             })
             .collect();
         let mut all = vec![Slope::default(); points.len()];

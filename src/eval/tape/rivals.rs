@@ -84,10 +84,12 @@ impl Tape {
         }
     }
 
-    /// Whether the value surely changes by at most 1 per length unit.
+    /// Whether it is a leaf, or a min or max of leaves, and the value surely changes by at most 1 per
+    /// length unit.
     pub(crate) fn is_gentle(&self) -> bool {
-        let is_gentle = |leaf: &LeafStep| leaf.field.convex() || leaf.field.exact();
-        self.rivals.is_some() && self.frames.is_empty() && self.leaves.iter().all(is_gentle)
+        let is_gentle = |leaf: &LeafStep| leaf.slot == 0 && (leaf.field.convex() || leaf.field.exact());
+        let is_choice = self.rivals.is_some() || self.leaves.len() == 1;
+        is_choice && self.leaves.iter().all(is_gentle)
     }
 
     /// The tape of one of its leaves, or of its complement.

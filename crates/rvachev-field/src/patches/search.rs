@@ -157,6 +157,7 @@ impl Patches {
         // Of what is below the range no more is asked.
         let open = |most: R| (range.low - most).select(most.lift(0.0), most);
         most = open(most);
+        let mut far = at_most(most);
         let middle = [p[0].one(), p[1].one(), p[2].one()];
         let mut height = 0;
         for entry in entries {
@@ -192,10 +193,13 @@ impl Patches {
                             best.take(square, at);
                             flat.take(square, at);
                             most = open(most.min(best.square));
+                            far = at_most(most);
                         }
                         continue;
                     }
-                    let square = R::from_face(p, face, sides);
+                    // A patch is nearer than its triangle by its sag at most.
+                    let reach = (far + f64::from(face.sag)).square();
+                    let Some(square) = R::from_near_face(p, face, sides, reach) else { continue };
                     let distance = square.sqrt();
                     let least = (distance * SURE - f64::from(face.sag)).max(square.lift(0.0));
                     let least = least.square() * SURE;
@@ -203,6 +207,7 @@ impl Patches {
                     count += usize::from(least.any_below(most));
                     best.take((distance + f64::from(face.sag)).square() * SURELY + f64::from(f32::MIN_POSITIVE), at);
                     most = open(most.min(best.square));
+                    far = at_most(most);
                 }
             }
             for (at, least) in &stack.kept[..count] {
@@ -317,6 +322,12 @@ impl Patches {
 #[inline(always)]
 fn farthest<R: Real>(square: R, sag: f32) -> R {
     (square.sqrt() + f64::from(sag)).square() * SURELY + f64::from(f32::MIN_POSITIVE)
+}
+
+/// How far points are at most, by the square; rounding is on the far side.
+#[inline(always)]
+fn at_most<R: Real>(square: R) -> R {
+    square.sqrt() * SURELY + f64::from(f32::MIN_POSITIVE)
 }
 
 /// The square of how far points are from a box, at least.
