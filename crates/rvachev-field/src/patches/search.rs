@@ -157,7 +157,6 @@ impl Patches {
         // Of what is below the range no more is asked.
         let open = |most: R| (range.low - most).select(most.lift(0.0), most);
         most = open(most);
-        let mut far = at_most(most);
         let middle = [p[0].one(), p[1].one(), p[2].one()];
         let mut height = 0;
         for entry in entries {
@@ -193,12 +192,11 @@ impl Patches {
                             best.take(square, at);
                             flat.take(square, at);
                             most = open(most.min(best.square));
-                            far = at_most(most);
                         }
                         continue;
                     }
                     // A patch is nearer than its triangle by its sag at most.
-                    let reach = (far + f64::from(face.sag)).square();
+                    let reach = (at_most(most) + f64::from(face.sag)).square();
                     let Some(square) = R::from_near_face(p, face, sides, reach) else { continue };
                     let distance = square.sqrt();
                     let least = (distance * SURE - f64::from(face.sag)).max(square.lift(0.0));
@@ -207,7 +205,6 @@ impl Patches {
                     count += usize::from(least.any_below(most));
                     best.take((distance + f64::from(face.sag)).square() * SURELY + f64::from(f32::MIN_POSITIVE), at);
                     most = open(most.min(best.square));
-                    far = at_most(most);
                 }
             }
             for (at, least) in &stack.kept[..count] {
