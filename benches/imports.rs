@@ -7,9 +7,9 @@
 //! surface; of all distances near the surface; and of single points in double precision. Then how
 //! fast files are read, and how long clearances of two imported meshes take.
 //!
-//! Words after `--` choose sizes by their names; `clearance` chooses the clearances alone, words after
-//! it those whose names have one of them. `save` writes the meshes and the points near them for other
-//! programs: `target/imports-NAME.ply` and `.xyz`.
+//! Words after `--` choose sizes by their names; `clearance` chooses the clearances alone, words
+//! after it those whose names have one of them. `save` writes the meshes and the points near them
+//! for other programs: `target/imports-NAME.ply` and `.xyz`.
 
 use std::fs;
 use std::hint::black_box;

@@ -112,9 +112,10 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
     Ok(())
 }
 
-/// Meshes what a quilt lacks about points of the surface, given how thick it is there. Gives whether
-/// it is all there now.
-pub(super) fn add(
+/// Meshes what a quilt lacks about points of the surface, in boxes of some thicknesses of what is
+/// there. Gives whether it is all there now: of many boxes, or points that are not close, nothing
+/// is meshed.
+pub(super) fn complete(
     quilt: &mut Quilt,
     slopes: &Slopes<'_>,
     lacking: &[Slender],

@@ -57,6 +57,9 @@ const GAIN: f64 = 0.8;
 /// Patches that are farther off than so many tolerances are to be mended.
 const FAR: f64 = 3.0;
 
+/// What is found within so many tolerances of known patches is known.
+pub(super) const KNOWN: f64 = 3.0;
+
 /// A surface is not done while a patch is off by so many.
 pub(super) const GROSS: f64 = 8.0;
 

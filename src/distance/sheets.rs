@@ -11,8 +11,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::column::{Crossings, Line};
-use super::quilt::Quilt;
-use super::surface::KNOWN;
+use super::quilt::{KNOWN, Quilt};
 use crate::eval::Region;
 use crate::mesh::{Hidden, Slopes, Subject};
 use crate::{Bounds, Cancelled, Run};

@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::compiled_with;
 use super::facets::{Facets, sharp};
-use super::mend::{add, mend};
+use super::mend::{complete, mend};
 use super::outline::border;
-use super::quilt::{Care, GROSS, Quilt};
+use super::quilt::{Care, GROSS, KNOWN, Quilt};
 use super::sheets::cover;
 use super::strips::strips;
 use crate::error::MeshingError;
@@ -48,9 +48,6 @@ const FEW: f64 = 1e-4;
 
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;
-
-/// What is found within so many tolerances of known patches is known.
-pub(super) const KNOWN: f64 = 3.0;
 
 /// The part of the work that finding the size of cells is.
 const LOOKING: f64 = 0.05;
@@ -165,15 +162,15 @@ impl DistanceSource for FromMeshes {
                 }
             }
             if let Some((reached, mut quilt)) = best.take_if(|_| is_last || is_enough) {
+                let [to_join, to_look] = run.stage(done, 1.0).stages([0.5, 0.5]);
+                let mut patches = Patches::new(&quilt.patches, &to_join)?;
                 let own = Subject { bounds: seen, ..subject };
-                let missed = found_by_leaves(&mut quilt, (&own, &near), &slopes, (cell, tolerance), run)?;
-                if !missed.is_empty() {
-                    quilt.miss(missed, cell);
+                if complete_by_leaves((&mut quilt, &patches), (&own, &near), &slopes, (cell, tolerance), &to_look)? {
+                    patches = Patches::new(&quilt.patches, &Run { progress: None, ..run.clone() })?;
                 }
-                let patches = Arc::new(Patches::new(&quilt.patches, &run.stage(done, 1.0))?);
                 run.report(1.0);
                 let accuracy = Accuracy::of_surface(reached, quilt.error);
-                return Ok(Surface::new(patches, accuracy, flat).in_doubt(tolerance, quilt.doubts(tolerance)));
+                return Ok(Surface::new(Arc::new(patches), accuracy, flat).in_doubt(tolerance, quilt.doubts(tolerance)));
             }
             cell *= 0.5;
         }
@@ -196,26 +193,29 @@ impl DistanceSource for FromMeshes {
     }
 }
 
-/// Adds to a quilt what it lacks about leaves that may pass between the nodes of cells. Gives boxes
-/// about what it still lacks, and does not tell of.
-fn found_by_leaves(
-    quilt: &mut Quilt,
+/// Adds to a quilt, whose patches these are, what it lacks about leaves that may pass between the
+/// nodes of cells, and tells of what it lacks still. Gives whether patches have come.
+fn complete_by_leaves(
+    (quilt, known): (&mut Quilt, &Patches),
     (subject, near): (&Subject<'_>, &Bounds),
     slopes: &Slopes<'_>,
     (cell, tolerance): (f64, f64),
     run: &Run,
-) -> Result<Vec<Bounds>, CompileError> {
-    let alone = Run { progress: None, ..run.clone() };
-    let known = Patches::new(&quilt.patches, &alone)?;
+) -> Result<bool, CompileError> {
     let is_near = |p: DVec3, by: f64| known.nearest(p).is_some_and(|foot| foot.distance <= by);
     let is_lacking = |p: DVec3| near.contains(p) && !is_near(p, KNOWN * tolerance);
-    let lacking = run.install(|| subject.slender(cell, &is_lacking, &alone)).map_err(compile_error)?;
-    if add(quilt, slopes, &lacking, tolerance, &alone)? {
-        return Ok(Vec::new());
+    let [to_look, to_add] = run.stages([0.5, 0.5]);
+    let lacking = run.install(|| subject.slender(cell, &is_lacking, &to_look)).map_err(compile_error)?;
+    let (count, error) = (quilt.len(), quilt.error);
+    if !complete(quilt, slopes, &lacking, tolerance, &to_add)? {
+        // What patches were told to be off tells of these as well.
+        let untold = lacking.iter().filter(|own| !is_near(own.at, error));
+        let missed: Vec<Bounds> = untold.map(|own| Bounds::from_center(own.at, DVec3::splat(cell))).collect();
+        if !missed.is_empty() {
+            quilt.miss(missed, cell);
+        }
     }
-    // What patches are told to be off tells of these as well.
-    let untold = lacking.iter().filter(|own| !is_near(own.at, quilt.error));
-    Ok(untold.map(|own| Bounds::from_center(own.at, DVec3::splat(cell))).collect())
+    Ok(quilt.len() > count)
 }
 
 /// The size of a solid, or how far it reaches from the origin, along axes that it ends along.

@@ -1,10 +1,9 @@
 //! Many answers, each of its own, on the threads of a run.
 
 use rayon::prelude::*;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
 
 /// What `answer` says of each number below `count`, in their order, on the threads of the caller;
 /// a thread tells how far it is after `chunk` answers. One may take milliseconds: the run is asked

@@ -13,7 +13,8 @@
 //!   after nine values. Of complements it is the other way round.
 //! * Of other formulas the ranges of the value's slopes over the cell tell the plane and the angle
 //!   (the mean-value form). The cones are linear functions in each of the eight boxes about q.
-//! * Where there may be creases, the cell is [cut](super::cuts) by the planes of all that meet there.
+//! * Where there may be creases, the cell is [cut](super::cuts) by the planes of all that meet
+//!   there.
 //! * What is searched for, folded or deformed, tells the directions along which it is entered, and
 //!   not left: from a point inside all that lies along them is inside.
 

@@ -8,10 +8,10 @@
 //!                               δ/(δ + m).
 //! ```
 //!
-//! Of other values the slopes tell a plane, and of meshes layers are told that hold their triangles. The
-//! planes of all parts of a program divide the cell into
-//! bodies that are inside or outside by what minima and maxima make of the parts; what is open of the
-//! parts adds up. Faces between such bodies are the surface where one is inside and one outside.
+//! Of other values the slopes tell a plane, and of meshes layers are told that hold their
+//! triangles. The planes of all parts of a program divide the cell into bodies that are inside or
+//! outside by what minima and maxima make of the parts; what is open of the parts adds up. Faces
+//! between such bodies are the surface where one is inside and one outside.
 
 use glam::DVec3;
 
@@ -299,8 +299,8 @@ struct Tangents {
     is_exact: bool,
 }
 
-/// At most so many tangents in a body about the origin; coordinates are rounded as those are that are
-/// as large as `far`.
+/// At most so many tangents in a body about the origin; coordinates are rounded as those are that
+/// are as large as `far`.
 fn tangents(
     value: impl Fn(DVec3) -> f64,
     gradient: impl Fn(DVec3) -> (f64, DVec3),

@@ -1,10 +1,10 @@
 //! The volume and the moments of a solid, within bounds that are certain.
 //!
 //! The solid's box is divided as for its mesh. Blocks inside count as they are. Those that the
-//! surface may cross are [told to rounding](super::flat) if all its faces are flat. Else it is known
-//! how much they hold [at least and at most](super::bracket), to the fourth power of their size but
-//! where many faces meet. Those that leave most open are halved along all axes, with programs
-//! narrowed to the halves, until what is open of all is little enough.
+//! surface may cross are [told to rounding](super::flat) if all its faces are flat. Else it is
+//! known how much they hold [at least and at most](super::bracket), to the fourth power of their
+//! size but where many faces meet. Those that leave most open are halved along all axes, with
+//! programs narrowed to the halves, until what is open of all is little enough.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -18,9 +18,10 @@ use crate::program::Program;
 use crate::space::{Block, Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::Zone;
+use rvachev_num::InOrder;
 
-/// Cells begin so much before the box, as a part of their side, that hardly ever a face is in a side of
-/// one.
+/// Cells begin so much before the box, as a part of their side, that hardly ever a face is in a
+/// side of one.
 const ASIDE: f64 = 0.061_803_4;
 
 /// What an integral may take, and what it is to tell.
@@ -156,7 +157,7 @@ pub(super) fn integral(
         let held = enclosed.held(&program, &bounds).unwrap_or_else(|| held(&program, &bounds));
         Ok(Cell { held, bounds, program })
     };
-    let cells = places.into_par_iter().map(first).collect::<Result<Vec<Cell>, Cancelled>>()?;
+    let cells = places.into_par_iter().map(first).try_in_order()?;
     let mut asked = cells.len();
     let mut sums = Sums { inside, cells, enclosed, bounds: *bounds };
     let smallest = FINEST * bounds.size().element_product();
@@ -212,7 +213,7 @@ impl Sums {
             });
             Ok(parts.flatten().collect::<Vec<Result<Cell, Held>>>())
         };
-        let found = chosen.par_iter().map(eighths).collect::<Result<Vec<_>, Cancelled>>()?;
+        let found = chosen.par_iter().map(eighths).try_in_order()?;
         let mut next = chosen.into_iter().peekable();
         let mut at = 0;
         self.cells.retain(|_| {

@@ -23,8 +23,8 @@ const GAIN: usize = 16;
 /// How far areas may be apart by rounding, in lengths of the border times how far off things are.
 const ROUNDING: f64 = 8.0;
 
-/// The surface that triangles are, with none of it farther off than `off`, from much fewer triangles,
-/// if it is flat enough. Their corners may be on sides of others.
+/// The surface that triangles are, with none of it farther off than `off`, from much fewer
+/// triangles, if it is flat enough. Their corners may be on sides of others.
 pub(super) fn merged(all: &[[DVec3; 3]], off: f64, run: &Run) -> Result<Vec<[DVec3; 3]>, Cancelled> {
     let mut numbers: HashMap<[u64; 3], u32> = HashMap::new();
     let mut number = |p: &DVec3| {
@@ -117,8 +117,8 @@ impl Fit {
     }
 }
 
-/// A face filled anew, by its triangles and the sides that it ends at; nothing if it is not flat, or
-/// that takes more of them.
+/// A face filled anew, by its triangles and the sides that it ends at; nothing if it is not flat,
+/// or that takes more of them.
 fn filled(
     own: &[[DVec3; 3]],
     border: Vec<([u32; 2], DVec3)>,

@@ -44,11 +44,11 @@ impl Solid {
     ///   exactly. In blocks that the surface may cross, ranges of the slopes tell a plane and how
     ///   far the surface may be turned from it. Blocks are divided where most is left open. The
     ///   errors are bounds: what they bound is often a tenth of them, or less.
-    /// * **Flat faces**: solids of flat-faced leaves, joined, copied and cut in any way, are right to
-    ///   rounding, their area as well, in milliseconds.
+    /// * **Flat faces**: solids of flat-faced leaves, joined, copied and cut in any way, are right
+    ///   to rounding, their area as well, in some milliseconds to tens of them.
     /// * **Area** of others: that of finer and finer meshes with sharp features. Its error is an
-    ///   estimate, not a bound: how much the last halving of cells has changed, or the mesh's volume is off,
-    ///   as a part of it.
+    ///   estimate, not a bound: how much the last halving of cells has changed, or the mesh's
+    ///   volume is off, as a part of it.
     /// * **Closed forms**: superellipsoids, supertoroids, generalised superquadrics, ellipsoids and
     ///   the bounded exact primitives, also under rigid motions, scalings and affine maps,
     ///   are right to rounding, whatever the tolerance. No area has a closed form of superquadrics

@@ -19,8 +19,7 @@ use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
 use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Interval, Run};
-use rvachev_num::InOrder;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 /// The cells of a block that the surface may come into and turn round in.
 pub(super) struct Unresolved {

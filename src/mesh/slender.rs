@@ -92,3 +92,40 @@ impl Subject<'_> {
         feet.filter(|foot| region.contains(*foot)).map(|at| Slender { at, thickness, is_close }).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Solid;
+    use crate::distance::compiled;
+
+    /// A ball that fits between eight nodes is looked for, one that holds a node wherever it is is
+    /// not.
+    #[test]
+    fn what_may_pass_between_nodes_is_found() {
+        let cell = 0.25;
+        for (diameter, is_found) in [(0.01, true), (0.9, true), (1.7, true), (1.8, false)] {
+            let centre = DVec3::new(1.1, -0.3, 0.2);
+            let ball = Solid::sphere(0.5 * diameter * cell).translate(centre);
+            let programs = compiled(&(Solid::cuboid([4.0, 3.0, 2.0]) - ball)).unwrap();
+            let subject = Subject { program: &programs.surface, bounds: programs.bounds, palette: None, whole: None };
+            let found = subject.slender(cell, &|_| true, &Run::default()).unwrap();
+            assert_eq!(!found.is_empty(), is_found, "{diameter}: {}", found.len());
+            for Slender { at, thickness, is_close } in found {
+                assert!((thickness / cell - diameter).abs() < 1e-9 && is_close);
+                assert!((at.distance(centre) / cell - 0.5 * diameter).abs() < 0.01 * diameter, "{diameter}: {at}");
+            }
+        }
+    }
+
+    /// What is wide and thin has more places than are looked from one by one.
+    #[test]
+    fn places_of_what_is_wide_are_apart() {
+        let fin = Solid::cuboid([3.9, 2.9, 1e-4]) | Solid::cuboid([1.0; 3]);
+        let programs = compiled(&fin).unwrap();
+        let subject = Subject { program: &programs.surface, bounds: programs.bounds, palette: None, whole: None };
+        let found = subject.slender(0.25, &|p| p.x > 0.6, &Run::default()).unwrap();
+        assert!(found.len() > 100 && found.iter().all(|own| own.at.x > 0.6 && !own.is_close), "{}", found.len());
+        assert!(found.iter().all(|own| (own.at.z.abs() - 5e-5).abs() < 1e-5));
+    }
+}

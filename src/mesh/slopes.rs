@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use crate::eval::{Evaluator, Gradients, Program, Region, Tape, with_evaluator};
 use crate::{Bounds, Cancelled, Run};
+use rvachev_num::InOrder;
 
 /// After so many points it is seen whether the work may go on, where each takes long.
 const OFTEN: usize = 64;
@@ -91,7 +92,7 @@ impl Slopes<'_> {
                 run.check()?;
                 with_evaluator(|evaluator| self.of_task(evaluator, task, points, run))
             })
-            .collect();
+            .try_in_order();
         let mut all = vec![Slope::default(); points.len()];
         for (task, found) in tasks.iter().zip(found?) {
             for (number, slope) in task.numbers.iter().zip(found) {

@@ -12,8 +12,7 @@ use super::stencil::Passes;
 use super::target::Target;
 use super::view::RasterView;
 use crate::Run;
-use rvachev_num::InOrder;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 /// How the depth buffer of a tree is found.
 ///

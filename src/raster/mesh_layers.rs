@@ -12,8 +12,7 @@ use super::target::Target;
 use super::triangle::{Batch, Triangle};
 use super::view::RasterView;
 use crate::{Cancelled, Mesh, Run};
-use rvachev_num::InOrder;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 /// Triangles that are prepared at once by a thread.
 const CHUNK: usize = 4096;

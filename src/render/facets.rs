@@ -25,8 +25,7 @@ use super::facet_block::{Block, NODES, Ray, SIDE, Sketch};
 use crate::eval::{Evaluator, Gradients, Program, Tape};
 use crate::space::{Grid, SurfaceBlocks, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::InOrder;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 /// Rays step this far over a border, in cells.
 const NUDGE: f32 = 1e-3;

@@ -28,8 +28,7 @@ use super::settings::RenderSettings;
 use super::shade::Visibility;
 use super::spot::Spot;
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 /// Rays to each of the two lights, of one pixel: the lanes of a vector.
 const RAYS: usize = 4;

@@ -26,8 +26,7 @@ use super::settings::{RenderSettings, Style};
 use super::shade::{Studio, Visibility};
 use super::spot::Spot;
 use crate::{Cancelled, Rays, Run};
-use rvachev_num::InOrder;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 /// Pixels of a band, about: some tens of megabytes.
 const BAND: u32 = 1 << 19;

@@ -10,8 +10,7 @@ use rayon::prelude::*;
 
 use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::InOrder;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 /// A regular grid of cubic blocks.
 #[derive(Clone, Copy, Debug)]

@@ -685,7 +685,8 @@ fn rods_thinner_than_cells_are_found_or_told() -> Outcome {
     Ok(())
 }
 
-/// Holes thinner than cells beside an edge, of which cells show the edge alone; straight and turned.
+/// Holes thinner than cells beside an edge, of which cells show the edge alone; straight and
+/// turned.
 #[test]
 fn holes_thinner_than_cells_are_found_or_told() -> Outcome {
     let mut random = Random::new(34);
@@ -699,6 +700,23 @@ fn holes_thinner_than_cells_are_found_or_told() -> Outcome {
         println!("{radius}: off {off}, {accuracy:?}");
         assert!(off <= accuracy.error + accuracy.tolerance, "{radius} at {at_edge}: off {off}, {accuracy:?}");
         assert!(off < 1e-3, "{radius} at {at_edge}: off {off}, {accuracy:?}");
+    }
+    // Of other convex leaves, a tenth of a cell thick and about one, by turns.
+    let (thin, thick) = (0.01, 0.1);
+    for (name, cut, within) in [
+        ("a slot", Solid::cuboid([2.0 * thin, 2.0 * thin, 4.0]), thin),
+        ("a prism", Solid::prism(6, thick, 4.0), thick * 0.75_f64.sqrt()),
+        ("an ellipsoid", Solid::ellipsoid([thin, thin, 3.0]), thin),
+        ("a superellipsoid", Solid::superellipsoid([thick, thick, 3.0], 0.4, 0.7), thick),
+        ("a capsule", Solid::capsule(thin, 4.0), thin),
+        ("a cone", Solid::cone(thick, 0.5 * thick, 4.0), 0.75 * thick),
+    ] {
+        let at_edge = DVec3::new(9.7 + 0.1 * random.unit(), 12.0 * random.unit() - 6.0, 0.0);
+        let turn = DQuat::from_axis_angle(random.direction(), 4.0 * random.unit());
+        let plate = Solid::cuboid([20.0, 16.0, 2.0]) - cut.translate(at_edge);
+        let moved = plate.rotate(turn).offset(0.05);
+        let off = (moved.value(turn * at_edge)? - (0.05 - within)).abs();
+        assert!(off < 1e-3, "{name} at {at_edge}: off {off}, {:?}", moved.accuracy()?);
     }
     // Twisted, a leaf has no box of its own to look in.
     let plate = Solid::cuboid([20.0, 16.0, 2.0]) - at(Solid::cylinder(0.02, 4.0), [9.7, 3.0, 0.0]);

@@ -8,6 +8,8 @@ use rvachev::{
     RFunction, Run, Solid, catalogue, deg, rad,
 };
 
+use crate::support::Random;
+
 fn most(matrix: DMat3) -> f64 {
     matrix.to_cols_array().into_iter().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
@@ -234,8 +236,8 @@ fn areas_of_what_meshes_do_not_show_are_not_told() {
     assert_eq!(none.measure(1e-3).unwrap().volume, 0.0);
 }
 
-/// Flat faces are summed up to rounding, whatever tolerance is asked for: of joins with flush faces,
-/// of copies, of polygons, turned and stretched.
+/// Flat faces are summed up to rounding, whatever tolerance is asked for: of joins with flush
+/// faces, of copies, of polygons, turned and stretched.
 #[test]
 fn flat_faces_are_right_to_rounding() {
     let turned = |solid: &Solid| solid.rotate_x(deg(20.0)).rotate_z(deg(35.0)).translate([3.0, -1.0, 2.0]);
@@ -268,4 +270,45 @@ fn flat_faces_are_right_to_rounding() {
     // Boxes that touch have nothing in common, and no skin.
     let none = turned(&(&block & &beside)).measure(1e-3).unwrap();
     assert!(none.volume < 1e-9 && none.area < 1e-6, "{none:?}");
+}
+
+/// Bodies with flat faces that lie across each other anyhow, flush ones among them: their measures
+/// are those of sharp meshes.
+#[test]
+fn random_joins_of_flat_faces_agree_with_meshes() {
+    let mut random = Random::new(371);
+    for n in 0..24 {
+        let mut part = || {
+            let size = DVec3::new(random.range(0.3, 2.0), random.range(0.3, 2.0), random.range(0.3, 2.0));
+            let leaf = match random.below(4) {
+                0 => Solid::prism(5, 0.6 * size.x, size.z),
+                1 => Solid::wedge(size),
+                2 => Solid::pyramid(3, 0.8 * size.x, size.y),
+                _ => Solid::cuboid(size),
+            };
+            // Steps of a half leave many faces flush.
+            let at = (2.0 * random.vector(-1.0, 1.0)).round() / 2.0;
+            let turned = leaf.rotate_z(deg(random.range(0.0, 90.0)));
+            if random.below(2) == 0 { leaf.translate(at) } else { turned.rotate_x(deg(30.0)).translate(at) }
+        };
+        let mut body = part();
+        for k in 0..2 + n % 4 {
+            let other = part();
+            body = match (n + k) % 3 {
+                0 => body - other,
+                1 => body | other,
+                _ => body.union(&other, RFunction::P(2.0)),
+            };
+        }
+        let mesh = body.mesh(&MeshSettings { cell: CellSize::LongestSide(96), ..MeshSettings::default() }).unwrap();
+        let (told, checked) = (body.measure(0.2).unwrap(), mesh.check());
+        println!(
+            "{n}: {} by {:e}, {}; {}, {}",
+            told.volume, told.volume_error, checked.volume, told.area, checked.area
+        );
+        let near = |a: f64, b: f64, part: f64| (a - b).abs() <= part * b;
+        assert!(told.volume_error < 1e-6 * told.volume, "{n}: {body:?} {told:?}");
+        assert!(near(told.volume, checked.volume, 1e-3), "{n}: {body:?} {told:?}");
+        assert!(near(told.area, checked.area, 5e-3), "{n}: {body:?} {told:?}");
+    }
 }

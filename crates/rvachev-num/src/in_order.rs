@@ -4,8 +4,8 @@ use rayon::iter::IndexedParallelIterator;
 
 /// What the items of a parallel loop give, in order.
 ///
-/// `collect` does the same and compiles to three times as much: it is made for loops whose length
-/// is not known, too, and stops the others at the first error. Jobs ask their run whether to go on.
+/// `collect` does the same, and is compiled for loops whose length is not known as well; at an
+/// error it stops the others. Jobs ask their run whether to go on.
 pub trait InOrder: IndexedParallelIterator {
     /// All of it.
     fn in_order(self) -> Vec<Self::Item> {

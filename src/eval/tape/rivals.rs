@@ -84,8 +84,8 @@ impl Tape {
         }
     }
 
-    /// Whether it is a leaf, or a min or max of leaves, and the value surely changes by at most 1 per
-    /// length unit.
+    /// Whether it is a leaf, or a min or max of leaves, and the value surely changes by at most 1
+    /// per length unit.
     pub(crate) fn is_gentle(&self) -> bool {
         let is_gentle = |leaf: &LeafStep| leaf.slot == 0 && (leaf.field.convex() || leaf.field.exact());
         let is_choice = self.rivals.is_some() || self.leaves.len() == 1;

@@ -1,8 +1,9 @@
 //! PLY, as text and binary in both orders: see the [writer](crate::io::write_ply).
 //!
 //! Of `vertex` it takes x, y, z, nx, ny, nz and red, green, blue, alpha; of `face` the list of
-//! vertices, colours and owner; of `tristrips` the list of vertices; of any type. Other elements and
-//! properties are skipped. Polygons become triangles: fans, where faces stand before the vertices.
+//! vertices, colours and owner; of `tristrips` the list of vertices; of any type. Other elements
+//! and properties are skipped. Polygons become triangles: fans, where faces stand before the
+//! vertices.
 
 mod header;
 mod strips;

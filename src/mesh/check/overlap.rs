@@ -19,8 +19,7 @@ use super::lists::{mapped, sorted};
 use super::meet::{is_degenerate, meet, meet_beyond_edge, meet_beyond_vertex, surely_apart};
 use crate::geom::Mesh;
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 /// How many pairs are listed.
 pub(super) const LISTED: usize = 16;
@@ -61,7 +60,7 @@ impl Overlaps {
                 }
                 Ok(found)
             })
-            .collect();
+            .try_in_order();
         let mut all = Overlaps { degenerate, most, ..Overlaps::default() };
         for found in chunks? {
             all.count += found.count;

@@ -38,10 +38,9 @@ use super::suspect::{CellRows, Suspect, Suspicion};
 use super::{Part, Sampler};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, Signs};
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
 
 /// No point of a cell is farther from the nearest of its nodes, in cells, with room for rounding:
 /// half of the diagonal.

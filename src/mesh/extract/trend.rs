@@ -26,8 +26,7 @@ use rayon::prelude::*;
 use super::samples::Samples;
 use crate::mesh::signs::BLOCK;
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 /// How much the trend may change the normal within a cell, and how large the box may be of what a
 /// block's own normals have beside it; with those of neighbours it may be twice that. Two normals

@@ -11,7 +11,7 @@ use crate::geom::Mesh;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::table::{CaseTable, EDGE_CORNERS};
 use crate::{Cancelled, Run};
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 /// The signs of all nodes, with a layer of outside nodes around them: node i of the array is
 /// number i + 1 here.
@@ -143,7 +143,8 @@ impl<'a> Rows<'a> {
             meter.step()?;
             Ok(self.count(k, starts))
         });
-        let counts: Vec<Count> = counted.collect::<Result<_, Cancelled>>()?;
+        let counts: Result<Vec<Count>, Cancelled> = counted.try_in_order();
+        let counts = counts?;
         let mut all = Count::default();
         for (n, starts) in starts.chunks_mut(self.across).enumerate() {
             let first = all.vertices as u32;

@@ -17,7 +17,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 use self::chain::Chains;
 pub use self::section::Side;
@@ -31,7 +31,6 @@ use crate::distance::compiled_with;
 use crate::eval::Program;
 use crate::geom::Contours;
 use crate::{COORDINATE_LIMIT, Cancelled, Plane, PlaneBounds, Run, Solid};
-use rvachev_num::InOrder;
 
 /// How far the first square goes beyond the region. Corners of squares keep off the round
 /// coordinates that faces are fond of.

@@ -17,14 +17,13 @@ use std::ops::Range;
 
 use glam::DVec2;
 use rayon::prelude::*;
-use rvachev_num::Meter;
+use rvachev_num::{InOrder, Meter};
 
 use super::section::{Filling, Section};
 use super::spread::Spread;
 use super::square::{Node, Root, Square};
 use crate::eval::Program;
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
 
 /// So many squares of a plane are divided in a task at most: with slopes that do not tell, contours
 /// of a fine tolerance would have no end.

@@ -153,8 +153,8 @@ impl Patches {
         self.foot_on(best.which as usize, p)
     }
 
-    /// The nearest point to one, and how far its patch is from the farthest of other points; nothing
-    /// if there are no patches.
+    /// The nearest point to one, and how far its patch is from the farthest of other points;
+    /// nothing if there are no patches.
     pub fn nearest_with(&self, p: DVec3, others: &[DVec3]) -> Option<(Foot, f64)> {
         let at = self.search_one(self.frame.into_local(p).to_array()).which as usize;
         let foot = self.foot_on(at, p)?;
