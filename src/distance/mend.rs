@@ -10,7 +10,6 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::compiled_with;
 use super::facets::{Facets, sharp};
@@ -20,7 +19,7 @@ use crate::mesh::{Slender, Slopes};
 use crate::solid::Node;
 use crate::{Bounds, Cancelled, Mesh, RFunction, Run, Solid};
 use rvachev_field::{Patch, Patches};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// So many boxes are meshed, those of the farthest spots, and boxes in these.
 const BOXES: usize = 512;
@@ -97,8 +96,8 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
     };
     for groups in groups.chunks(AT_ONCE) {
         let most = most.saturating_sub(quilt.len() + spots.len()) / SHARE;
-        let found = groups.par_iter().map(|group| mended(group, most));
-        for ((_, numbers), part) in groups.iter().zip(found.try_in_order()?) {
+        let found = jobs::try_in_order(groups.len(), |n| mended(&groups[n], most))?;
+        for ((_, numbers), part) in groups.iter().zip(found) {
             match part {
                 Some(part) if part.error < worst(numbers) => {
                     numbers.iter().for_each(|n| left[*n] = false);
@@ -150,7 +149,7 @@ pub(super) fn complete(
     let mut is_all = true;
     let boxes: Vec<_> = boxes.into_iter().collect();
     for boxes in boxes.chunks(AT_ONCE) {
-        for part in boxes.par_iter().map(made).try_in_order()? {
+        for part in jobs::try_in_order(boxes.len(), |n| made(&boxes[n]))? {
             is_all &= part.is_some();
             part.into_iter().for_each(|part| quilt.take_all(part));
         }

@@ -8,7 +8,6 @@
 //! ```
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::column::{Crossings, Line};
 use super::quilt::{KNOWN, Quilt};
@@ -16,7 +15,7 @@ use crate::eval::Region;
 use crate::mesh::{Hidden, Slopes, Subject};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::{Patch, Patches};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// Nearer to the surface than this part of the size, points may be on either side by rounding
 /// errors.
@@ -72,7 +71,7 @@ pub(super) fn cover(
         let is_missed = is_sure && found.is_empty();
         Ok((found, is_missed.then_some(*cell)))
     };
-    let found = hidden.par_iter().map(of_cell).try_in_order()?;
+    let found = jobs::try_in_order(hidden.len(), |n| of_cell(&hidden[n]))?;
     let (found, missed): (Vec<Vec<Found>>, Vec<Option<Bounds>>) = found.into_iter().unzip();
     let sheets: Vec<Patch> = found.iter().flatten().map(|(patch, _)| *patch).collect();
     quilt.add_all(found.into_iter().flatten());

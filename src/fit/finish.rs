@@ -1,7 +1,6 @@
 //! From a model of the scaled cloud to a fit of all its points.
 
 use glam::{DQuat, DVec3};
-use rayon::prelude::*;
 
 use super::cloud::Scaled;
 use super::cost::Cost;
@@ -15,7 +14,7 @@ use super::samples::Samples;
 use crate::geom::PointCloud;
 use crate::{Cancelled, Field, ParamError, Run, SolidError};
 use rvachev_field::check::LARGEST_LENGTH;
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// If a smaller share of the points is of the solid, it is not what they are of.
 const FEWEST: f64 = 0.05;
@@ -52,7 +51,7 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
     let chunks: Vec<Vec<(f32, f64)>> = if scaled.is_whole {
         vec![chances.iter().zip(&off).map(|(p, d)| (*p as f32, *d)).collect()]
     } else {
-        run.install(|| all.par_chunks(CHUNK).map(weighed).try_in_order())?
+        run.install(|| jobs::try_chunks(all, CHUNK, |_, chunk| weighed(chunk)))?
     };
     let weights: Vec<f32> = chunks.iter().flatten().map(|w| w.0).collect();
     let inliers = weights.iter().map(|w| f64::from(*w)).sum::<f64>() / weights.len() as f64;

@@ -12,7 +12,6 @@
 //! places follows.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use rayon::prelude::*;
 
 use super::align::{Align, CLOSE, PARAMETERS, Pose, Residual};
 use super::check::{check_depth, check_extent};
@@ -28,7 +27,7 @@ use crate::distance::compiled_with;
 use crate::eval::Program;
 use crate::geom::PointCloud;
 use crate::{Cancelled, CellSize, MeshSettings, Run, Solid};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 const NAMES: [&str; PARAMETERS] = ["turn x", "turn y", "turn z", "shift x", "shift y", "shift z", "ln scale"];
 
@@ -269,13 +268,10 @@ impl Model<'_> {
         let rounds = [(fewer, WIDE, 8), (few, WIDE * FALL.powi(4), 6), (few, WIDE * FALL.powi(5), 8)];
         for (round, (some, width, steps)) in rounds.into_iter().enumerate() {
             let align = self.align(some, false);
-            let mut found = poses
-                .par_iter()
-                .map(|start| {
-                    let pose = align.descend(*start, self.widths(width, steps), run)?;
-                    Ok((align.cost(pose, run)?, pose))
-                })
-                .try_in_order()?;
+            let mut found = jobs::try_in_order(poses.len(), |n| {
+                let pose = align.descend(poses[n], self.widths(width, steps), run)?;
+                Ok((align.cost(pose, run)?, pose))
+            })?;
             found.sort_by(|a, b| a.0.total_cmp(&b.0));
             found.truncate(KEPT.get(round).copied().unwrap_or(1));
             poses = found.into_iter().map(|(_, pose)| pose).collect();

@@ -1,7 +1,6 @@
 //! Many answers, each of its own, on the threads of a run.
 
-use rayon::prelude::*;
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 use crate::{Cancelled, Run};
 
@@ -23,6 +22,6 @@ pub(crate) fn each<R: Send>(
         meter.add(steps);
         Ok(answers)
     };
-    let all = (0..count.div_ceil(chunk)).into_par_iter().map(answers_of);
-    Ok(all.try_in_order()?.into_iter().flatten().collect())
+    let all = jobs::try_in_order(count.div_ceil(chunk), answers_of)?;
+    Ok(all.into_iter().flatten().collect())
 }

@@ -7,7 +7,6 @@
 //! programs narrowed to the halves, until what is open of all is little enough.
 
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
 
 use super::bracket::{Held, held};
 use super::enclosed::Enclosed;
@@ -18,7 +17,7 @@ use crate::program::Program;
 use crate::space::{Block, Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::Zone;
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// Cells begin so much before the box, as a part of their side, that hardly ever a face is in a
 /// side of one.
@@ -157,7 +156,7 @@ pub(super) fn integral(
         let held = enclosed.held(&program, &bounds).unwrap_or_else(|| held(&program, &bounds));
         Ok(Cell { held, bounds, program })
     };
-    let cells = places.into_par_iter().map(first).try_in_order()?;
+    let cells = jobs::try_taking(places, first)?;
     let mut asked = cells.len();
     let mut sums = Sums { inside, cells, enclosed, bounds: *bounds };
     let smallest = FINEST * bounds.size().element_product();
@@ -213,7 +212,7 @@ impl Sums {
             });
             Ok(parts.flatten().collect::<Vec<Result<Cell, Held>>>())
         };
-        let found = chosen.par_iter().map(eighths).try_in_order()?;
+        let found = jobs::try_in_order(chosen.len(), |n| eighths(&chosen[n]))?;
         let mut next = chosen.into_iter().peekable();
         let mut at = 0;
         self.cells.retain(|_| {

@@ -10,8 +10,6 @@
 //! direction along which it is only entered, or no cell in it is one that is looked for, or until
 //! it is a cell.
 
-use rayon::prelude::*;
-
 use super::blocks::Blocks;
 use super::extract::Sampler;
 use super::lattice::Lattice;
@@ -19,7 +17,7 @@ use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
 use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Interval, Run};
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 /// The cells of a block that the surface may come into and turn round in.
 pub(super) struct Unresolved {
@@ -47,7 +45,8 @@ pub(super) fn unresolved_cells(
 ) -> Result<Vec<Unresolved>, Cancelled> {
     let meter = Meter::new(run, blocks.cells.len());
     let sampler = SolidSampler::new(lattice, blocks, limits, f64::INFINITY);
-    let of_block = |scratch: &mut Scratch, (number, &block): (usize, &[u32; 3])| {
+    let of_block = |scratch: &mut Scratch, number: usize| {
+        let block = blocks.cells[number];
         meter.step()?;
         let program = blocks.programs.of(number);
         if program.is_entered_once(&[lattice.region(block, BLOCK)]) {
@@ -66,8 +65,9 @@ pub(super) fn unresolved_cells(
         let cells = search.found;
         Ok(Some(Unresolved { block, cells }).filter(|found| !found.cells.is_empty()))
     };
-    let found = blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block);
-    Ok(found.try_in_order()?.into_iter().flatten().collect())
+    let found = jobs::in_order_with(blocks.cells.len(), || sampler.scratch(), of_block);
+    let found = found.into_iter().collect::<Result<Vec<_>, Cancelled>>()?;
+    Ok(found.into_iter().flatten().collect())
 }
 
 /// A block in which cells are sought.

@@ -4,7 +4,6 @@
 //! a finer lattice. Flush faces and acute edges are among them, and have nothing to show.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::blocks::Blocks;
 use super::error::MeshingError;
@@ -17,7 +16,7 @@ use super::subject::Subject;
 use crate::eval::Program;
 use crate::geom::{Findings, Mesh};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// Cells of a block that the surface is in, as a rule.
 const OF_BLOCK: usize = 110;
@@ -110,7 +109,8 @@ impl Subject<'_> {
     /// there.
     fn crossed(&self, blocks: &Blocks, lattice: &Lattice, beside: Beside, run: &Run) -> Result<Vec<Hidden>, Cancelled> {
         let sampler = SolidSampler::new(lattice, blocks, self.bounds, BESIDE);
-        let of_block = |scratch: &mut Scratch, (number, &block): (usize, &[u32; 3])| {
+        let of_block = |scratch: &mut Scratch, number: usize| {
+            let block = blocks.cells[number];
             run.check()?;
             let slope = blocks.programs.of(number).slope_within(&lattice.region(block, BLOCK));
             // No point of a cell is farther from its nearest node than half of its diagonal.
@@ -139,8 +139,8 @@ impl Subject<'_> {
             }
             Ok(found)
         };
-        let found = blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block);
-        Ok(found.try_in_order()?.concat())
+        let found = jobs::in_order_with(blocks.cells.len(), || sampler.scratch(), of_block);
+        Ok(found.into_iter().collect::<Result<Vec<_>, Cancelled>>()?.concat())
     }
 
     /// Whether all nodes of a cell and of those about it are on one side.

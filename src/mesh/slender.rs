@@ -7,7 +7,6 @@
 //! ```
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::blocks::Blocks;
 use super::error::MeshingError;
@@ -16,7 +15,7 @@ use super::signs::BLOCK;
 use super::subject::Subject;
 use crate::eval::SlenderLeaf;
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// What is thinner than this may pass between nodes, in cells: their diagonal.
 const PASSES: f64 = 1.74;
@@ -68,7 +67,7 @@ impl Subject<'_> {
             Ok(found.filter(|own| is_asked_for(own.at)).collect())
         };
         let found: Result<Vec<Vec<Slender>>, Cancelled> =
-            blocks.cells.par_iter().enumerate().map(of_block).try_in_order();
+            jobs::try_in_order(blocks.cells.len(), |n| of_block((n, &blocks.cells[n])));
         Ok(found?.concat())
     }
 

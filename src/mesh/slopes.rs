@@ -4,11 +4,10 @@
 //! program is short; each box is a task of its own.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::eval::{Evaluator, Gradients, Program, Region, Tape, with_evaluator};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// After so many points it is seen whether the work may go on, where each takes long.
 const OFTEN: usize = 64;
@@ -86,13 +85,10 @@ impl Slopes<'_> {
     /// The slopes at points, in their order.
     pub(crate) fn at(&self, points: &[DVec3], run: &Run) -> Result<Vec<Slope>, Cancelled> {
         let tasks = self.tasks(points, run)?;
-        let found: Result<Vec<Vec<Slope>>, Cancelled> = tasks
-            .par_iter()
-            .map(|task| {
-                run.check()?;
-                with_evaluator(|evaluator| self.of_task(evaluator, task, points, run))
-            })
-            .try_in_order();
+        let found: Result<Vec<Vec<Slope>>, Cancelled> = jobs::try_in_order(tasks.len(), |n| {
+            run.check()?;
+            with_evaluator(|evaluator| self.of_task(evaluator, &tasks[n], points, run))
+        });
         let mut all = vec![Slope::default(); points.len()];
         for (task, found) in tasks.iter().zip(found?) {
             for (number, slope) in task.numbers.iter().zip(found) {

@@ -13,7 +13,6 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::blocks::Blocks;
 use super::error::MeshingError;
@@ -22,7 +21,7 @@ use super::resolve::{Among, Unresolved, unresolved_cells};
 use crate::eval::Program;
 use crate::geom::{ThinPlace, ThinReport};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// Cells of a place that its thickness is sought in.
 const ASKED: usize = 8;
@@ -84,7 +83,7 @@ pub(super) fn thin_report(
         };
         Ok(found.cells.iter().filter_map(thin).collect::<Vec<_>>())
     };
-    let cells: Result<Vec<Vec<Thin<'_>>>, Cancelled> = all.par_iter().map(of_block).try_in_order();
+    let cells: Result<Vec<Vec<Thin<'_>>>, Cancelled> = jobs::try_in_order(all.len(), |n| of_block(&all[n]));
     let cells: Vec<Thin<'_>> = cells?.into_iter().flatten().collect();
     let mut places = grouped(&cells, run)?;
     // The surface turns round in the cell of a sharp corner, too.
@@ -97,7 +96,7 @@ pub(super) fn thin_report(
         to_measure.check()?;
         Ok(measured(place.iter().map(|&n| &cells[n]).collect(), lattice))
     };
-    let listed: Result<Vec<ThinPlace>, Cancelled> = listed.par_iter().map(measured).try_in_order();
+    let listed: Result<Vec<ThinPlace>, Cancelled> = jobs::try_in_order(listed.len(), |n| measured(&listed[n]));
     run.report(1.0);
     Ok(ThinReport { cell: lattice.step(), cells: count, count: places.len(), places: listed? })
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::error::RasterError;
 use crate::{Cancelled, Mesh, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// A mesh whose surface is closed and faces outward, as every join of layers needs it.
 ///
@@ -57,7 +57,7 @@ impl<'a> ClosedMesh<'a> {
         if !uneven_edges(mesh.triangles(), &to_look)?.is_empty() {
             let welded = by_position(mesh, &to_weld)?;
             let triangles: Vec<[u32; 3]> =
-                mesh.triangles().par_iter().map(|t| t.map(|i| welded[i as usize])).in_order();
+                jobs::in_order(mesh.triangles().len(), |n| mesh.triangles()[n].map(|i| welded[i as usize]));
             let uneven = uneven_edges(&triangles, &to_compare)?;
             if let Some(&first) = uneven.first() {
                 let at = mesh.positions()[first as usize].as_dvec3();

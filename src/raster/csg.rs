@@ -1,7 +1,5 @@
 //! Depth buffers of whole trees.
 
-use rayon::prelude::*;
-
 use super::buffers::Buffers;
 use super::error::RasterError;
 use super::expression::{Circuit, Csg};
@@ -12,7 +10,7 @@ use super::stencil::Passes;
 use super::target::Target;
 use super::view::RasterView;
 use crate::Run;
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 /// How the depth buffer of a tree is found.
 ///
@@ -159,15 +157,15 @@ impl RasterView {
         let count = across * down;
         let meter = Meter::new(&run, count);
         let tiles = run.install(|| {
-            (0..count)
-                .into_par_iter()
-                .map_init(intervals::Scratch::default, |scratch, number| {
-                    meter.check()?;
-                    let target = plan.tile(operands, &Tile::number(number, self.width, self.height), scratch);
-                    meter.add(1);
-                    Ok::<Target, RasterError>(target)
-                })
-                .try_in_order()
+            let tile = |scratch: &mut intervals::Scratch, number: usize| {
+                meter.check()?;
+                let target = plan.tile(operands, &Tile::number(number as u32, self.width, self.height), scratch);
+                meter.add(1);
+                Ok(target)
+            };
+            jobs::in_order_with(count as usize, intervals::Scratch::default, tile)
+                .into_iter()
+                .collect::<Result<_, RasterError>>()
         })?;
         Ok(Buffers { view: *self, tiles })
     }

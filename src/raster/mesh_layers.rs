@@ -3,7 +3,6 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::buffers::SurfaceId;
 use super::closed::{ClosedMesh, Slant};
@@ -12,7 +11,7 @@ use super::target::Target;
 use super::triangle::{Batch, Triangle};
 use super::view::RasterView;
 use crate::{Cancelled, Mesh, Run};
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 /// Triangles that are prepared at once by a thread.
 const CHUNK: usize = 4096;
@@ -120,24 +119,19 @@ impl<'a> MeshLayers<'a> {
             }
             Corner { drawn: if is_whole { Some(snapped(view, relative)) } else { None }, relative }
         };
-        let corners: Vec<Corner> = mesh.positions().par_iter().with_min_len(CHUNK).map(corner).in_order();
+        let corners: Vec<Corner> = jobs::in_order(mesh.positions().len(), |n| corner(&mesh.positions()[n]));
         let meter = Meter::new(&preparing, mesh.triangles().len());
-        let parts: Vec<(Vec<Triangle>, bool)> = mesh
-            .triangles()
-            .par_chunks(CHUNK)
-            .enumerate()
-            .map(|(chunk, triangles)| {
-                meter.check()?;
-                let mut part = (Vec::with_capacity(triangles.len()), false);
-                for (i, t) in triangles.iter().enumerate() {
-                    let face = (chunk * CHUNK + i) as u32;
-                    let [a, b, c] = [corners[t[0] as usize], corners[t[1] as usize], corners[t[2] as usize]];
-                    part.1 |= prepare(view, [a, b, c], face, &mut part.0);
-                }
-                meter.add(triangles.len() as u64);
-                Ok(part)
-            })
-            .try_in_order()?;
+        let parts: Vec<(Vec<Triangle>, bool)> = jobs::try_chunks(mesh.triangles(), CHUNK, |chunk, triangles| {
+            meter.check()?;
+            let mut part = (Vec::with_capacity(triangles.len()), false);
+            for (i, t) in triangles.iter().enumerate() {
+                let face = (chunk * CHUNK + i) as u32;
+                let [a, b, c] = [corners[t[0] as usize], corners[t[1] as usize], corners[t[2] as usize]];
+                part.1 |= prepare(view, [a, b, c], face, &mut part.0);
+            }
+            meter.add(triangles.len() as u64);
+            Ok(part)
+        })?;
         let is_cut = parts.iter().any(|part| part.1);
         let mut triangles = Vec::with_capacity(parts.iter().map(|part| part.0.len()).sum());
         for mut part in parts {

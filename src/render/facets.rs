@@ -25,7 +25,7 @@ use super::facet_block::{Block, NODES, Ray, SIDE, Sketch};
 use crate::eval::{Evaluator, Gradients, Program, Tape};
 use crate::space::{Grid, SurfaceBlocks, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 /// Rays step this far over a border, in cells.
 const NUDGE: f32 = 1e-3;
@@ -98,14 +98,13 @@ impl Facets {
             maker.block(program, &grid.bounds(index, next), cell, &nodes)
         };
         let meter = Meter::new(&to_make, found.len());
-        let made = found.par_chunks(TOGETHER).enumerate().map(|(chunk, blocks)| {
+        let made = jobs::try_chunks(&found, TOGETHER, |chunk, blocks| {
             meter.check()?;
             let mut maker = Maker::default();
-            let made = (0..blocks.len()).map(|at| make(&mut maker, chunk * TOGETHER + at)).collect();
+            let made: Vec<Block> = (0..blocks.len()).map(|at| make(&mut maker, chunk * TOGETHER + at)).collect();
             meter.add(blocks.len() as u64);
             Ok(made)
         });
-        let made: Result<Vec<Vec<Block>>, Cancelled> = made.try_in_order();
         let surface: Vec<Block> = made?.into_iter().flatten().collect();
         let blocks = blocks.as_ivec3();
         let tops = found.par_iter().zip(&surface).map(|(found, block)| {

@@ -28,7 +28,7 @@ use super::settings::RenderSettings;
 use super::shade::Visibility;
 use super::spot::Spot;
 use crate::{Cancelled, Run};
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 /// Rays to each of the two lights, of one pixel: the lanes of a vector.
 const RAYS: usize = 4;
@@ -159,15 +159,12 @@ impl<'a> Obstacles<'a> {
         let open = |at: usize| self.open(&spots[at], ORDER[pattern(at) % PATTERNS]);
         let [to_gather, to_trace] = run.stages(if self.is_hard() { [0.5, 0.5] } else { [1.0, 0.0] });
         let meter = Meter::new(&to_gather, across * down);
-        let tiles: Result<Vec<Vec<Visibility>>, Cancelled> = (0..across * down)
-            .into_par_iter()
-            .map(|tile| {
-                meter.check()?;
-                let found = runs(tile).flatten().map(open).collect();
-                meter.add(1);
-                Ok(found)
-            })
-            .try_in_order();
+        let tiles: Result<Vec<Vec<Visibility>>, Cancelled> = jobs::try_in_order(across * down, |tile| {
+            meter.check()?;
+            let found = runs(tile).flatten().map(open).collect();
+            meter.add(1);
+            Ok(found)
+        });
         let tiles = tiles?;
         let mut seen = vec![Visibility::FULL; spots.len()];
         for (tile, found) in tiles.iter().enumerate() {

@@ -26,7 +26,7 @@ use super::settings::{RenderSettings, Style};
 use super::shade::{Studio, Visibility};
 use super::spot::Spot;
 use crate::{Cancelled, Rays, Run};
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 /// Pixels of a band, about: some tens of megabytes.
 const BAND: u32 = 1 << 19;
@@ -149,14 +149,10 @@ impl Picture<'_> {
         let [light, match_light] = if obstacles.is_some() { [0.3, 0.05] } else { [0.0, 0.0] };
         let [to_see, to_light, to_divide, to_match, to_shade] = run.stages([0.35, light, 0.2, match_light, 0.1]);
         let seen = self.surfaces(window, &to_see)?;
-        let spots: Vec<Spot> = seen
-            .par_iter()
-            .enumerate()
-            .map(|(i, surface)| {
-                let (x, y) = (i as u32 % width, first + i as u32 / width);
-                self.spot(x, y, surface)
-            })
-            .in_order();
+        let spots: Vec<Spot> = jobs::in_order(seen.len(), |i| {
+            let (x, y) = (i as u32 % width, first + i as u32 / width);
+            self.spot(x, y, &seen[i])
+        });
         drop(seen);
         let open = match obstacles {
             None => vec![Visibility::FULL; spots.len()],
@@ -308,7 +304,7 @@ impl Picture<'_> {
             Some(draft) => draft.samples(&numbers, band.top, n, pixels.len()),
             None => self.scene.hits(&rays, run)?,
         };
-        let spots = rays.par_iter().zip(&hits).map(|(ray, hit)| Spot::new(ray.0, ray.1, hit, self.ground)).in_order();
+        let spots = jobs::in_order(rays.len(), |n| Spot::new(rays[n].0, rays[n].1, &hits[n], self.ground));
         Ok(Fine { numbers, spots })
     }
 
@@ -329,15 +325,10 @@ impl Picture<'_> {
             }
         }
         let hard = obstacles.is_some_and(Obstacles::is_hard);
-        let matched: Vec<Option<Visibility>> = fine
-            .spots
-            .par_iter()
-            .enumerate()
-            .map(|(k, spot)| match obstacles {
-                None => Some(Visibility::FULL),
-                Some(_) => self.matching(band, spot, places[k / n2], hard),
-            })
-            .in_order();
+        let matched: Vec<Option<Visibility>> = jobs::in_order(fine.spots.len(), |k| match obstacles {
+            None => Some(Visibility::FULL),
+            Some(_) => self.matching(band, &fine.spots[k], places[k / n2], hard),
+        });
         let alone: Vec<usize> = (0..matched.len()).filter(|k| matched[*k].is_none()).collect();
         let spots: Vec<Spot> = alone.iter().map(|k| fine.spots[*k]).collect();
         let mut open: Vec<Visibility> = matched.iter().map(|open| open.unwrap_or(Visibility::FULL)).collect();
@@ -352,7 +343,7 @@ impl Picture<'_> {
             let y = row(places[k / n2]) + (f64::from(down) + 0.5) / f64::from(n);
             self.shade(spot, open[k], self.behind(y))
         };
-        Ok(fine.spots.par_iter().enumerate().map(shade).in_order())
+        Ok(jobs::in_order(fine.spots.len(), |k| shade((k, &fine.spots[k]))))
     }
 
     /// The visibility of a spot, from the pixel at `place` and those about it; none if none of

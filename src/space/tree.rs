@@ -6,11 +6,10 @@
 //! that matter locally.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 /// A regular grid of cubic blocks.
 #[derive(Clone, Copy, Debug)]
@@ -141,7 +140,7 @@ pub(crate) fn surface_blocks(
             Ok((part.halves().map(|half| (half, program.clone())).into(), None))
         };
         type Divided = (Vec<(Part, Program)>, Option<[[u32; 3]; 2]>);
-        let next: Result<Vec<Divided>, Cancelled> = parts.into_par_iter().map(divided).try_in_order();
+        let next: Result<Vec<Divided>, Cancelled> = jobs::try_taking(parts, divided);
         parts = Vec::new();
         for (open, whole) in next? {
             parts.extend(open);
@@ -149,7 +148,7 @@ pub(crate) fn surface_blocks(
         }
     }
     let found: Result<Vec<SurfaceBlocks>, Cancelled> =
-        parts.into_par_iter().map(|(part, program)| descend(part, program, (grid, margin), &meter)).try_in_order();
+        jobs::try_taking(parts, |(part, program)| descend(part, program, (grid, margin), &meter));
     run.report(1.0);
     let found = found?;
     let mut all = SurfaceBlocks { inside, ..SurfaceBlocks::default() };

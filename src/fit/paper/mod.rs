@@ -30,8 +30,6 @@ mod truncated;
 mod watershed;
 mod whole;
 
-use rayon::prelude::*;
-
 use self::holes::{Depth, drill, negative};
 use self::refine::refined;
 use self::scene::Scene;
@@ -42,7 +40,7 @@ use self::whole::{Part, Whole};
 use super::deviations::Deviation;
 use super::error::FitError;
 use crate::Run;
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 pub use self::result::{ErrorOfFit, TruncatedSupershape, UnionFit, UnionPart};
 pub use self::segments::Segments;
@@ -167,7 +165,7 @@ fn single_fits(
             error => FitError::Segment { label: *name, source: Box::new(error) },
         })
     };
-    let found = names.par_iter().zip(members).map(fit).in_order();
+    let found = jobs::in_order(names.len(), |n| fit((&names[n], &members[n])));
     run.report(1.0);
     // The first error by the order of labels, not of threads.
     found.into_iter().collect()

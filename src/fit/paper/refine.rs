@@ -7,12 +7,11 @@
 //! diagonal, so that their units do not matter.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::truncated::{PARAMETERS, Row};
 use super::whole::Whole;
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// Tasks that the points are split into, however many threads there are.
 const TASKS: usize = 8;
@@ -102,7 +101,7 @@ impl Normal {
             Ok(sums)
         };
         let size = points.len().div_ceil(TASKS).max(1);
-        let parts = points.par_chunks(size).map(sum).try_in_order()?;
+        let parts = jobs::try_chunks(points, size, |_, chunk| sum(chunk))?;
         let mut all = Normal { gradient: vec![0.0; n], matrix: vec![0.0; n * n] };
         for part in parts {
             all.gradient.iter_mut().zip(part.gradient).for_each(|(to, x)| *to += x);

@@ -8,11 +8,10 @@
 //! Source: Y. D. Fougerolle et al., *Rational supershapes for surface reconstruction*, equation 15.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::truncated::{Row, Truncated, both, either};
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// Points that one task sums; sums are in the same order for any number of threads.
 const CHUNK: usize = 256;
@@ -107,7 +106,7 @@ fn sum_of(points: &[DVec3], run: &Run, of: impl Fn(DVec3) -> f64 + Sync) -> Resu
         run.check()?;
         Ok(chunk.iter().map(|p| of(*p)).sum::<f64>())
     };
-    let sums = points.par_chunks(CHUNK).map(sum).try_in_order()?;
+    let sums = jobs::try_chunks(points, CHUNK, |_, chunk| sum(chunk))?;
     Ok(sums.into_iter().sum())
 }
 

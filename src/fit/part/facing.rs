@@ -17,13 +17,12 @@ use std::f64::consts::TAU;
 
 use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
-use rayon::prelude::*;
 use rvachev_num::Real;
 use rvachev_num::lanes::{F32, Lanes};
 
 use crate::fit::random::Random;
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// Points that it is found by.
 const MOST: usize = 2200;
@@ -115,7 +114,7 @@ fn sums(
         run.check()?;
         Ok(dispatch!(Level::new(), simd => sums_on(simd, at, sources, moments, what, square)))
     };
-    let chunks: Vec<Vec<DVec3>> = at.par_chunks(CHUNK).map(chunk).try_in_order()?;
+    let chunks: Vec<Vec<DVec3>> = jobs::try_chunks(at, CHUNK, |_, points| chunk(points))?;
     Ok(chunks.concat())
 }
 

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use glam::{DAffine3, DVec3};
-use rayon::prelude::*;
 
 use super::super::deviations::Deviation;
 use super::super::error::FitError;
@@ -22,7 +21,7 @@ use super::sobol::Sobol;
 use super::times::PartTimes;
 use super::words::describe;
 use crate::{Bounds, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// Points that the volumes in common are estimated from.
 const POINTS: usize = 1 << 14;
@@ -132,7 +131,7 @@ fn compared(
         };
         Ok::<Vec<_>, FitError>(chunk.iter().enumerate().map(side).collect())
     };
-    let sides: Vec<Vec<[bool; 2]>> = points.par_chunks(CHUNK).enumerate().map(sides).try_in_order()?;
+    let sides: Vec<Vec<[bool; 2]>> = jobs::try_chunks(&points, CHUNK, |nth, chunk| sides((nth, chunk)))?;
     let (mut both, mut either, mut filled) = (0_usize, 0_usize, 0_usize);
     // Those that are missing apart from those that are too many.
     let mut wrong = [Vec::new(), Vec::new()];

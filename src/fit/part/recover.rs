@@ -1,7 +1,6 @@
 //! From a mesh to a tree of leaves.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::super::check::check_depth;
 use super::super::error::FitError;
@@ -30,7 +29,7 @@ use crate::fit::cloud::SIZES;
 use crate::fit::grid::extent;
 use crate::geom::{Mesh, PointCloud};
 use crate::{Bounds, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// How far pairs are from the surface on either side, in diagonals, without noise.
 const APART: f64 = 0.004;
@@ -231,7 +230,7 @@ fn queries(body: &Body, samples: &Samples, regions: &Regions, seed: u64, run: &R
             run.check()?;
             Ok(points.iter().map(|p| body.winding_number(samples.centre + samples.size * *p)).collect::<Vec<_>>())
         };
-        let numbers = points.par_chunks(WORD).map(numbers).try_in_order()?;
+        let numbers = jobs::try_chunks(points, WORD, |_, chunk| numbers(chunk))?;
         Ok(numbers.concat())
     })?)
 }

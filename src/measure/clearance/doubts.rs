@@ -14,7 +14,7 @@ use super::overlap::Entry;
 use super::{Side, distance};
 use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// After so many boxes the work ends, with what is known then.
 const MOST: usize = 1 << 13;
@@ -156,8 +156,8 @@ pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f
             let to_boxes = others.map(|(other, ..)| gap(bounds, other)).fold(f64::INFINITY, f64::min);
             (to_patches - spare[side]).max(own).min(to_boxes).max(0.0)
         };
-        let of_boxes = |side: usize| open[side].par_iter().map(move |(bounds, _, own)| near(side, bounds, *own));
-        let found = [0, 1].map(|side| of_boxes(side).in_order());
+        let of_box = |side: usize, (bounds, _, own): &_| near(side, bounds, *own);
+        let found = [0, 1].map(|side: usize| jobs::in_order(open[side].len(), |n| of_box(side, &open[side][n])));
         asked += 8 * (found[0].len() + found[1].len());
         let mut next: [Boxes; 2] = [Vec::new(), Vec::new()];
         for (side, (boxes, found)) in open.into_iter().zip(found).enumerate() {

@@ -11,7 +11,6 @@
 use std::ops::{ControlFlow, Range};
 
 use glam::DVec3;
-use rayon::prelude::*;
 use rvachev_field::Zone;
 
 use super::apart::ball;
@@ -20,7 +19,7 @@ use super::piece::Piece;
 use super::{AT_ONCE, Side, distance};
 use crate::eval::Block;
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// How far inside a solid points of it are looked for, in accuracies of the surfaces: of thin
 /// sheets only those that are close to the surface are inside, or on a sheet midway between the
@@ -130,7 +129,8 @@ fn near(
         };
         let mut open = Vec::new();
         for some in levels.chunks(&blocks, 16 * AT_ONCE) {
-            for found in some?.par_iter().map(look).in_order() {
+            let some = some?;
+            for found in jobs::in_order(some.len(), |n| look(&some[n])) {
                 match found {
                     ControlFlow::Break(point) => return Ok(Err(point)),
                     ControlFlow::Continue(block) => open.extend(block),
@@ -166,7 +166,8 @@ pub(super) fn within(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> R
     };
     let mut deepest = 0.0;
     for some in Levels::new(&to_look).chunks(&patches, 16 * AT_ONCE) {
-        for found in some?.par_iter().map(look).in_order() {
+        let some = some?;
+        for found in jobs::in_order(some.len(), |n| look(&some[n])) {
             match found {
                 Entry::At(_) => return Ok(found),
                 Entry::AtMost(at_most) => deepest = f64::max(deepest, at_most),
@@ -211,7 +212,8 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
     while !pieces.is_empty() {
         let mut open = Vec::new();
         for chunk in levels.chunks(&pieces, AT_ONCE) {
-            let found: Vec<ControlFlow<DVec3, Option<Piece>>> = chunk?.par_iter().map(look).in_order();
+            let chunk = chunk?;
+            let found: Vec<ControlFlow<DVec3, Option<Piece>>> = jobs::in_order(chunk.len(), |n| look(&chunk[n]));
             for found in found {
                 match found {
                     ControlFlow::Break(point) => return Ok(Entry::At(point)),

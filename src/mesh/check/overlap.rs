@@ -19,7 +19,7 @@ use super::lists::{mapped, sorted};
 use super::meet::{is_degenerate, meet, meet_beyond_edge, meet_beyond_vertex, surely_apart};
 use crate::geom::Mesh;
 use crate::{Cancelled, Run};
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 /// How many pairs are listed.
 pub(super) const LISTED: usize = 16;
@@ -50,17 +50,14 @@ impl Overlaps {
         let search = Search::new(mesh, fans, order, run)?;
         let groups = search.levels.get(1).map_or(0, Vec::len);
         let meter = Meter::new(&to_search, groups.div_ceil(CHUNK));
-        let chunks: Result<Vec<Overlaps>, Cancelled> = (0..groups.div_ceil(CHUNK))
-            .into_par_iter()
-            .map(|chunk| {
-                meter.step()?;
-                let mut found = Overlaps { most, ..Overlaps::default() };
-                for group in chunk * CHUNK..groups.min((chunk + 1) * CHUNK) {
-                    search.group(group, &mut found);
-                }
-                Ok(found)
-            })
-            .try_in_order();
+        let chunks: Result<Vec<Overlaps>, Cancelled> = jobs::try_in_order(groups.div_ceil(CHUNK), |chunk| {
+            meter.step()?;
+            let mut found = Overlaps { most, ..Overlaps::default() };
+            for group in chunk * CHUNK..groups.min((chunk + 1) * CHUNK) {
+                search.group(group, &mut found);
+            }
+            Ok(found)
+        });
         let mut all = Overlaps { degenerate, most, ..Overlaps::default() };
         for found in chunks? {
             all.count += found.count;
@@ -173,7 +170,9 @@ impl<'a> Search<'a> {
         {
             run.check()?;
             let union = |group: &[Box]| group[1..].iter().fold(group[0], |a, &b| a.union(b));
-            levels.push(below.par_chunks(GROUP).map(union).in_order());
+            levels.push(jobs::in_order(below.len().div_ceil(GROUP), |n| {
+                union(&below[n * GROUP..below.len().min((n + 1) * GROUP)])
+            }));
         }
         Ok(Search { mesh, fans, order, corners, levels })
     }

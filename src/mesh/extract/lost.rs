@@ -30,7 +30,6 @@
 //! tip of what is seen there.
 
 use glam::Vec3;
-use rayon::prelude::*;
 
 use super::parts::Parts;
 use super::skipped::{Asked, Skips};
@@ -38,7 +37,7 @@ use super::suspect::{CellRows, Suspect, Suspicion};
 use super::{Part, Sampler};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, Signs};
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 use crate::{Cancelled, Run};
 
@@ -208,7 +207,7 @@ impl Parts<'_> {
             meter.step()?;
             Ok(sampler.may_hide(*number, self.blocks[*number], cells, share).then_some(*number))
         };
-        let hidden: Result<Vec<Option<usize>>, Cancelled> = open.par_iter().map(is_lost).try_in_order();
+        let hidden: Result<Vec<Option<usize>>, Cancelled> = jobs::try_in_order(open.len(), |n| is_lost(&open[n]));
         lost.extend(hidden?.into_iter().flatten());
         lost.sort_unstable();
         Ok(lost)

@@ -21,12 +21,11 @@
 //! is the same in all blocks.
 
 use glam::{Mat3A, Vec3, Vec3A, Vec4, Vec4Swizzles};
-use rayon::prelude::*;
 
 use super::samples::Samples;
 use crate::mesh::signs::BLOCK;
 use crate::{Cancelled, Run};
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 /// How much the trend may change the normal within a cell, and how large the box may be of what a
 /// block's own normals have beside it; with those of neighbours it may be twice that. Two normals
@@ -186,8 +185,8 @@ pub(super) fn even_blocks(samples: &Samples<'_>, run: &Run) -> Result<Vec<bool>,
     let meter = Meter::new(run, 2 * count);
     let goes_on = || meter.step().is_ok();
     let look = |n| if goes_on() { Vertices::new(samples, n) } else { Vertices::Uneven };
-    let own: Vec<Vertices> = (0..count).into_par_iter().map(look).in_order();
-    let even = (0..count).into_par_iter().map(|n| goes_on() && is_even(samples, &own, n)).in_order();
+    let own: Vec<Vertices> = jobs::in_order(count, look);
+    let even = jobs::in_order(count, |n| goes_on() && is_even(samples, &own, n));
     run.check()?;
     Ok(even)
 }

@@ -15,7 +15,6 @@
 //! of it next to the line, and a vertex: the two loops are s–x–t there.
 
 use glam::{DVec2, DVec3, Vec3, Vec3A};
-use rayon::prelude::*;
 
 use super::Sampler;
 use super::probe::Probe;
@@ -23,7 +22,7 @@ use super::samples::{Samples, cell_number, split_cell};
 use super::sharp::{AT_ONCE, Fan, Fans};
 use crate::mesh::feature::{INSET, Segment};
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 impl Fans {
     /// Finds out which edges between fans are turned, and to what.
@@ -33,8 +32,9 @@ impl Fans {
         run: &Run,
     ) -> Result<(), Cancelled> {
         let all = &*self;
-        let of_fans = |probe: &mut Probe<'_, S>, (n, fans): (usize, &[Fan])| {
+        let of_fans = |probe: &mut Probe<'_, S>, n: usize| {
             run.check()?;
+            let fans = &all.fans[n * AT_ONCE..all.fans.len().min((n + 1) * AT_ONCE)];
             let mut found = Vec::with_capacity(fans.len());
             for (low, fan) in (n * AT_ONCE..).zip(fans) {
                 let ring = all.of(low);
@@ -45,8 +45,9 @@ impl Fans {
             }
             Ok(found)
         };
+        let chunks = all.fans.len().div_ceil(AT_ONCE);
         let found: Result<Vec<Vec<Turned>>, Cancelled> =
-            all.fans.par_chunks(AT_ONCE).enumerate().map_init(|| Probe::new(samples, sampler), of_fans).try_in_order();
+            jobs::in_order_with(chunks, || Probe::new(samples, sampler), of_fans).into_iter().collect();
         let fans = self.fans.len() as u32;
         for Turned { fans: [low, high], segments, at } in found?.into_iter().flatten() {
             let places = [(low, segments[0]), (high, segments[1])].map(|(fan, nth)| {

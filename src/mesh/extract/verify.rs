@@ -17,7 +17,6 @@
 use std::collections::BTreeMap;
 
 use glam::{Vec3, Vec3A};
-use rayon::prelude::*;
 
 use super::Sampler;
 use super::halves::{Cut, Half};
@@ -27,7 +26,7 @@ use super::sharp::{AT_ONCE, Fan, Fans};
 use super::third::Face;
 use crate::mesh::feature::{Crease, Segment, Slope, settle, tangents};
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// Fans that are looked at together.
 const FEW: usize = 32;
@@ -103,12 +102,14 @@ impl Fans {
         all: &[T],
         tell: impl Fn(&mut Probe<'_, S>, &T) -> U + Sync,
     ) -> Result<Vec<U>, Cancelled> {
-        let of_chunk = |probe: &mut Probe<'_, S>, chunk: &[T]| {
+        let of_chunk = |probe: &mut Probe<'_, S>, number: usize| {
             run.check()?;
+            let chunk = &all[number * FEW..all.len().min((number + 1) * FEW)];
             Ok(chunk.iter().map(|one| tell(probe, one)).collect::<Vec<U>>())
         };
+        let chunks = all.len().div_ceil(FEW);
         let found: Result<Vec<Vec<U>>, Cancelled> =
-            all.par_chunks(FEW).map_init(|| Probe::new(samples, sampler), of_chunk).try_in_order();
+            jobs::in_order_with(chunks, || Probe::new(samples, sampler), of_chunk).into_iter().collect();
         Ok(found?.into_iter().flatten().collect())
     }
 
@@ -120,8 +121,9 @@ impl Fans {
         sampler: &S,
         run: &Run,
     ) -> Result<Vec<(u32, bool)>, Cancelled> {
-        let of_chunk = |probe: &mut Probe<'_, S>, (chunk, fans): (usize, &[Fan])| {
+        let of_chunk = |probe: &mut Probe<'_, S>, chunk: usize| {
             run.check()?;
+            let fans = &self.fans[chunk * AT_ONCE..self.fans.len().min((chunk + 1) * AT_ONCE)];
             let (mut found, mut points) = (Vec::new(), Vec::new());
             let mut number = (chunk * AT_ONCE) as u32;
             for fans in fans.chunk_by(|a, b| a.block == b.block && a.span.is_single() && b.span.is_single()) {
@@ -147,9 +149,9 @@ impl Fans {
             }
             Ok(found)
         };
-        let chunks = self.fans.par_chunks(AT_ONCE).enumerate();
+        let chunks = self.fans.len().div_ceil(AT_ONCE);
         let found: Result<Vec<Vec<(u32, bool)>>, Cancelled> =
-            chunks.map_init(|| Probe::new(samples, sampler), of_chunk).try_in_order();
+            jobs::in_order_with(chunks, || Probe::new(samples, sampler), of_chunk).into_iter().collect();
         Ok(found?.into_iter().flatten().collect())
     }
 

@@ -7,7 +7,6 @@
 //! ```
 
 use glam::DVec3;
-use rayon::prelude::*;
 use rvachev_field::{Patch, Patches};
 
 use super::Job;
@@ -15,7 +14,7 @@ use crate::eval::Program;
 use crate::geom::Mesh;
 use crate::mesh::slopes::Slopes;
 use crate::{Cancelled, Run};
-use rvachev_num::InOrder;
+use rvachev_num::jobs;
 
 /// Corners that are looked at before it is asked whether to go on.
 const AT_ONCE: usize = 1 << 12;
@@ -58,7 +57,7 @@ pub(super) fn lost(
         run.check()?;
         Ok(corners.iter().filter_map(far).collect::<Vec<_>>())
     };
-    let found: Result<Vec<Vec<_>>, Cancelled> = corners.par_chunks(AT_ONCE).map(of_chunk).try_in_order();
+    let found: Result<Vec<Vec<_>>, Cancelled> = jobs::try_chunks(corners, AT_ONCE, |_, chunk| of_chunk(chunk));
     Ok(found?.concat())
 }
 

@@ -11,7 +11,7 @@ use crate::geom::Mesh;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::table::{CaseTable, EDGE_CORNERS};
 use crate::{Cancelled, Run};
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 /// The signs of all nodes, with a layer of outside nodes around them: node i of the array is
 /// number i + 1 here.
@@ -139,12 +139,11 @@ impl<'a> Rows<'a> {
         // are none.
         let mut starts: Vec<Start> = vec![[0; 3]; self.across * (layers + 1)];
         let meter = Meter::new(run, 2 * layers);
-        let counted = starts.par_chunks_mut(self.across).take(layers).enumerate().map(|(k, starts)| {
+        let counted: Vec<(usize, &mut [Start])> = starts.chunks_mut(self.across).take(layers).enumerate().collect();
+        let counts = jobs::try_taking(counted, |(k, starts)| {
             meter.step()?;
-            Ok(self.count(k, starts))
-        });
-        let counts: Result<Vec<Count>, Cancelled> = counted.try_in_order();
-        let counts = counts?;
+            Ok::<Count, Cancelled>(self.count(k, starts))
+        })?;
         let mut all = Count::default();
         for (n, starts) in starts.chunks_mut(self.across).enumerate() {
             let first = all.vertices as u32;

@@ -16,8 +16,7 @@ mod tree;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 use self::chain::Chains;
 pub use self::section::Side;
@@ -181,7 +180,7 @@ fn stack(
             joined.add(1);
             Ok(Contours::new(lines, unresolved))
         };
-        sections.par_iter().zip(&found).map(contours).try_in_order()
+        jobs::try_in_order(sections.len(), |n| contours((&sections[n], &found[n])))
     });
     Ok(made?)
 }

@@ -16,8 +16,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::DVec2;
-use rayon::prelude::*;
-use rvachev_num::{InOrder, Meter};
+use rvachev_num::{Meter, jobs};
 
 use super::section::{Filling, Section};
 use super::spread::Spread;
@@ -118,7 +117,7 @@ impl Tree<'_> {
             meter.add(1);
             Ok(part)
         };
-        let parts: Vec<Part> = tasks.into_par_iter().map(all_of).try_in_order()?;
+        let parts: Vec<Part> = jobs::try_taking(tasks, all_of)?;
         let mut found: Vec<Found> = Vec::new();
         found.resize_with(self.sections.len(), Found::default);
         for part in std::iter::once(first).chain(parts) {
