@@ -113,10 +113,15 @@ impl Zone {
 
     /// The zone after an affine map.
     pub fn mapped(&self, map: &DAffine3) -> Zone {
-        if *map == DAffine3::IDENTITY {
-            return *self;
-        }
         let m = &map.matrix3;
+        if *m == DMat3::IDENTITY {
+            if map.translation == DVec3::ZERO {
+                return *self;
+            }
+            // The same as below of what is only moved.
+            let rounding = ROUNDING * (self.centre.abs() + self.extent() + map.translation.abs());
+            return Zone::new(self.centre + map.translation, self.axes, self.slack + rounding);
+        }
         let abs = m.abs();
         let rounding = ROUNDING * (abs * (self.centre.abs() + self.extent()) + map.translation.abs());
         Zone::new(map.transform_point3(self.centre), *m * self.axes, abs * self.slack + rounding)
