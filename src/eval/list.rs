@@ -52,3 +52,18 @@ impl DerefMut for List {
         &mut self.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_used_again() {
+        let mut long = List::zeroes(1000);
+        long.iter_mut().for_each(|v| *v = 1.0);
+        let place = long.as_ptr();
+        drop(long);
+        let short = List::zeroes(10);
+        assert!(short.as_ptr() == place && *short == [0.0; 10]);
+    }
+}

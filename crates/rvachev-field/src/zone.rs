@@ -393,3 +393,24 @@ pub(super) fn concave_rise(
     };
     rises_near(radius) || rises_near(3.0 * radius)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_moved_keeps_its_shape() {
+        let sides = DMat3::from_cols(DVec3::new(0.1, 0.2, 0.0), DVec3::new(-0.05, 0.3, 0.1), DVec3::Z * 0.2);
+        let zone = Zone::of_frame(DVec3::new(0.3, -1.2, 2.0), sides).inflated(0.01);
+        let by = DVec3::new(1.7, -0.3, 1e3);
+        let moved = zone.mapped(&DAffine3::from_translation(by));
+        assert_eq!((moved.centre, moved.axes), (zone.centre + by, zone.axes));
+        let grown = moved.slack - zone.slack;
+        assert!(grown.cmpge(4e-16 * by.abs()).all() && grown.max_element() < 1e-11, "{grown}");
+        for (axis, (moved, own)) in moved.hull().into_iter().zip(zone.hull()).enumerate() {
+            assert!(moved.lo() <= own.lo() + by[axis] && moved.hi() >= own.hi() + by[axis]);
+            assert!(moved.width() < own.width() + 1e-11);
+        }
+        assert_eq!(zone.mapped(&DAffine3::IDENTITY).hull(), zone.hull());
+    }
+}
