@@ -2,7 +2,7 @@
 
 use fidget::context::Tree;
 use glam::{DVec2, DVec3};
-use rvachev::catalogue::Part;
+use rvachev::catalogue::{Entry, Group, Part, Value};
 use rvachev::{
     Blend, Bounds, Extrusion, Gielis, Profile, RFunction, Solid, Superellipsoid, Supershape, catalogue, deg,
 };
@@ -61,19 +61,24 @@ pub fn named() -> Vec<Row> {
     rows
 }
 
-/// The example of every entry of the catalogue that makes a solid.
+/// The example of every entry of the catalogue: of R-functions and blends a union of two, and of
+/// all that makes a solid or a profile. Laws, curves and caps are what others take.
 pub fn catalogued() -> Vec<Row> {
-    let solid = |part| match part {
-        Part::Solid(solid) => Some(solid),
-        Part::Profile(profile) => Some(profile.extrude(0.5)),
-        _ => None,
-    };
+    // Ricci's blend takes these alone.
+    let [plate, post] = [[1.0, 1.0, 0.3], [0.5, 0.5, 1.0]].map(|axes| Solid::superellipsoid(axes, 0.3, 0.7));
     let bounded = |solid: Solid| {
         let is_finite = solid.bounds().is_ok_and(|bounds| bounds.is_finite());
         if is_finite { solid } else { solid & Solid::cuboid([4.0; 3]) }
     };
-    let rows = catalogue().iter().filter_map(|entry| Some(row(entry.name(), 128, bounded(solid(entry.example())?))));
-    rows.collect()
+    let solid = |entry: &Entry| match (entry.example(), entry.group()) {
+        (Part::Solid(solid), _) => Some(bounded(solid)),
+        (Part::Profile(profile), _) => Some(profile.extrude(0.5)),
+        (Part::Value(Value::Function(function)), _) => Some(plate.union(&post, function)),
+        (Part::Value(Value::Blend(blend)), _) => Some(plate.union_with(&post, blend)),
+        (_, Group::Curve | Group::Law | Group::Caps) => None,
+        (part, _) => panic!("{} has no row: {part:?}", entry.name()),
+    };
+    catalogue().iter().filter_map(|entry| Some(row(entry.name(), 128, solid(entry)?))).collect()
 }
 
 /// Superellipsoids of all exponents side by side.

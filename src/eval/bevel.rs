@@ -107,7 +107,7 @@ impl Bevel {
             let (mut out, mut faces) = (Slopes::new(local.count()), Vec::with_capacity(local.count()));
             // Beside each point of the face, along the one normal and along the other.
             let by = TURN_OF_LANES * self.chamfer.leg;
-            let mut near = Locals::with_capacity(2 * local.count());
+            let mut near = Locals::none();
             for i in 0..local.count() {
                 let sides = here.each_ref().map(|side| side.at(i));
                 let parts = Parts::of(sides);

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DVec3};
 
+use super::list::List;
 use super::{Evaluator, Gradients, Program, Tape};
 use crate::{Bounds, Dual, Interval, Jet, ParamError};
 use rvachev_field::kernel::{CHUNK, distinct, repeat};
@@ -182,19 +183,19 @@ pub(crate) fn with_evaluator<T>(work: impl FnOnce(&mut Evaluator) -> T) -> T {
 
 /// A chunk's points in a leaf's own coordinates, each once.
 pub(super) struct Locals {
-    at: [Vec<f32>; 3],
+    at: [List; 3],
 }
 
 /// Values and gradients of a chunk.
 pub(super) struct Slopes {
-    pub(super) value: Vec<f32>,
-    pub(super) gradient: [Vec<f32>; 3],
+    pub(super) value: List,
+    pub(super) gradient: [List; 3],
 }
 
 impl Slopes {
     /// So many, all 0.
     pub(super) fn new(count: usize) -> Slopes {
-        Slopes { value: vec![0.0; count], gradient: [(); 3].map(|()| vec![0.0; count]) }
+        Slopes { value: List::zeroes(count), gradient: [(); 3].map(|()| List::zeroes(count)) }
     }
 
     #[inline(always)]
@@ -206,7 +207,7 @@ impl Slopes {
     /// Those of a multiple.
     pub(super) fn times(mut self, factor: f64) -> Slopes {
         if factor != 1.0 {
-            for list in [&mut self.value].into_iter().chain(&mut self.gradient) {
+            for list in std::iter::once(&mut self.value).chain(&mut self.gradient) {
                 list.iter_mut().for_each(|v| *v *= factor as f32);
             }
         }
@@ -225,7 +226,7 @@ impl Locals {
     pub(super) fn of(points: &[&[f32]; 3], placement: &Placement) -> Locals {
         let own = distinct(*points);
         let [xs, ys, zs] = points.map(|axis| &axis[..own]);
-        let mut locals = Locals::with_capacity(xs.len());
+        let mut locals = Locals::none();
         for ((x, y), z) in xs.iter().zip(ys).zip(zs) {
             let p = placement.apply([f64::from(*x), f64::from(*y), f64::from(*z)]);
             locals.push(DVec3::from_array(p));
@@ -233,12 +234,12 @@ impl Locals {
         locals
     }
 
-    pub(super) fn with_capacity(count: usize) -> Locals {
-        Locals { at: [(); 3].map(|()| Vec::with_capacity(count)) }
+    pub(super) fn none() -> Locals {
+        Locals { at: [(); 3].map(|()| List::zeroes(0)) }
     }
 
     fn coordinates(&self) -> [&[f32]; 3] {
-        self.at.each_ref().map(Vec::as_slice)
+        self.at.each_ref().map(|list| &list[..])
     }
 
     /// How many there are.

@@ -27,6 +27,7 @@ use glam::{DAffine3, DVec3};
 use super::composite::unscaled;
 use super::even::{either, ends};
 use super::few::{Few, Lane};
+use super::list::List;
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::VALUE_LIMIT;
 use rvachev_field::kernel::{distinct, repeat};
@@ -399,21 +400,21 @@ impl AnyField for Fill {
         let frame = unscaled(placement);
         let count = points[0].len();
         let slopes = |side: &Signed| {
-            let mut out = [(); 4].map(|()| vec![0.0f32; count]);
+            let mut out = [(); 4].map(|()| List::zeroes(count));
             let [value, x, y, z] = &mut out;
             side.field.gradients(Chunk { points, placement: &frame, out: [value, x, y, z] });
             out
         };
-        let of = |list: &[Vec<f32>; 4], sign: f64, i: usize| {
+        let of = |list: &[List; 4], sign: f64, i: usize| {
             let [x, y, z] = [1, 2, 3].map(|k| sign * f64::from(list[k][i]));
             DVec3::new(x, y, z)
         };
         let own = distinct(points);
         let local = |i: usize| DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
         let is_far = (0..own).all(|i| self.depth(local(i)).0 < self.lowest());
-        let asked = |side: &Signed| if is_far { [(); 4].map(|()| vec![0.0; count]) } else { slopes(side) };
+        let asked = |side: &Signed| if is_far { [(); 4].map(|()| List::zeroes(count)) } else { slopes(side) };
         let ball = asked(&self.ball);
-        let sides: Vec<[Vec<f32>; 4]> = self.sides.iter().map(|side| asked(&side.distance)).collect();
+        let sides: Vec<[List; 4]> = self.sides.iter().map(|side| asked(&side.distance)).collect();
         let [value, dx, dy, dz] = out;
         for i in 0..own {
             let local = local(i);

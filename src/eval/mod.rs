@@ -34,6 +34,7 @@ mod flatten;
 mod flush;
 mod hierarchy;
 mod joint;
+mod list;
 mod moved_in;
 mod narrow;
 mod nothing;

@@ -57,6 +57,8 @@ mod raster;
 mod rays;
 mod recovery;
 mod rfunction;
+#[cfg(feature = "formula")]
+mod rows;
 mod runs;
 mod sampling;
 mod scale;

@@ -113,10 +113,15 @@ impl Zone {
 
     /// The zone after an affine map.
     pub fn mapped(&self, map: &DAffine3) -> Zone {
-        if *map == DAffine3::IDENTITY {
-            return *self;
-        }
         let m = &map.matrix3;
+        if *m == DMat3::IDENTITY {
+            if map.translation == DVec3::ZERO {
+                return *self;
+            }
+            // The same as below of what is only moved.
+            let rounding = ROUNDING * (self.centre.abs() + self.extent() + map.translation.abs());
+            return Zone::new(self.centre + map.translation, self.axes, self.slack + rounding);
+        }
         let abs = m.abs();
         let rounding = ROUNDING * (abs * (self.centre.abs() + self.extent()) + map.translation.abs());
         Zone::new(map.transform_point3(self.centre), *m * self.axes, abs * self.slack + rounding)
@@ -387,4 +392,25 @@ pub(super) fn concave_rise(
         })
     };
     rises_near(radius) || rises_near(3.0 * radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_moved_keeps_its_shape() {
+        let sides = DMat3::from_cols(DVec3::new(0.1, 0.2, 0.0), DVec3::new(-0.05, 0.3, 0.1), DVec3::Z * 0.2);
+        let zone = Zone::of_frame(DVec3::new(0.3, -1.2, 2.0), sides).inflated(0.01);
+        let by = DVec3::new(1.7, -0.3, 1e3);
+        let moved = zone.mapped(&DAffine3::from_translation(by));
+        assert_eq!((moved.centre, moved.axes), (zone.centre + by, zone.axes));
+        let grown = moved.slack - zone.slack;
+        assert!(grown.cmpge(4e-16 * by.abs()).all() && grown.max_element() < 1e-11, "{grown}");
+        for (axis, (moved, own)) in moved.hull().into_iter().zip(zone.hull()).enumerate() {
+            assert!(moved.lo() <= own.lo() + by[axis] && moved.hi() >= own.hi() + by[axis]);
+            assert!(moved.width() < own.width() + 1e-11);
+        }
+        assert_eq!(zone.mapped(&DAffine3::IDENTITY).hull(), zone.hull());
+    }
 }
