@@ -177,8 +177,8 @@ fn a_foil_through_a_block_overlaps() {
 fn screw(by: f64) -> Solid {
     let section =
         Profile::polygon([[-0.3, -0.42 - by], [0.6 + by, -0.12 - by], [0.6 + by, 0.12 + by], [-0.3, 0.42 + by]]);
-    let ridge = section.sweep_helix(&Helix::new(4.0, 1.25, 3.0));
-    ridge.union(Solid::cylinder(4.0 + by, 6.0), RFunction::MIN_MAX)
+    let ridge = section.sweep_helix(&Helix::new(4.0, 1.25, 4.0));
+    ridge.union(Solid::cylinder(4.0 + by, 8.0), RFunction::MIN_MAX)
 }
 
 #[test]

@@ -762,7 +762,7 @@ fn offsets_of_more_lobes_are_at_their_distance() -> Outcome {
 
 #[test]
 fn offsets_of_cusped_lobes_are_at_their_distance() -> Outcome {
-    ribs_are_found(&star().offset(0.2), 0.2)?;
+    ribs_are_found(&star().offset(0.1), 0.1)?;
     // More is asked by `offsets_of_more_lobes_are_at_their_distance`.
     offsets_are_at(&vase(3.0, 3.0), [0.16, -0.08], 64, 150)
 }
