@@ -65,7 +65,8 @@ pub(super) fn mend(
     tolerance: f64,
     run: &Run,
 ) -> Result<(), Cancelled> {
-    mend_of(Cells { size: cell, depth: DEEPEST, most: MOST }, quilt, slopes, tolerance, run)
+    mend_of(Cells { size: cell, depth: DEEPEST, most: MOST }, quilt, slopes, tolerance, run)?;
+    quilt.leave(slopes, run)
 }
 
 fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<(), Cancelled> {
@@ -100,7 +101,7 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
         let found = groups.par_iter().map(|group| mended(group, most));
         for ((_, numbers), part) in groups.iter().zip(found.try_in_order()?) {
             match part {
-                Some(part) if part.error < worst(numbers) => {
+                Some(part) if part.worst() < worst(numbers) => {
                     numbers.iter().for_each(|n| left[*n] = false);
                     quilt.take_all(part);
                 }
@@ -155,6 +156,7 @@ pub(super) fn complete(
             part.into_iter().for_each(|part| quilt.take_all(part));
         }
     }
+    quilt.leave(slopes, run)?;
     Ok(is_all)
 }
 
