@@ -262,6 +262,11 @@
 //! by lines across its cells, along which ranges tell where the other side is, down to what
 //! rounding errors leave. Whether a point is inside is still told by the solid's own value.
 //! Openings and closings measure twice: the solid, and where the centre of the ball may be.
+//! A flat face is few patches, however many cells it takes.
+//!
+//! Of a join that is measured on the side that this table names, only those operands are whose own
+//! values are no distances there: for the shell of `(a | b) - c` no patch follows the hole, if `c`
+//! knows its distances outside.
 //!
 //! Of profiles that are polygons, or joined of polygons by R-functions, of up to 2000 edges, the
 //! border and the curve at a distance from it are known: lines and arcs, in single precision.

@@ -64,7 +64,8 @@ pub(super) fn mend(
     tolerance: f64,
     run: &Run,
 ) -> Result<(), Cancelled> {
-    mend_of(Cells { size: cell, depth: DEEPEST, most: MOST }, quilt, slopes, tolerance, run)
+    mend_of(Cells { size: cell, depth: DEEPEST, most: MOST }, quilt, slopes, tolerance, run)?;
+    quilt.leave(slopes, run)
 }
 
 fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<(), Cancelled> {
@@ -99,7 +100,7 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
         let found = jobs::try_in_order(groups.len(), |n| mended(&groups[n], most))?;
         for ((_, numbers), part) in groups.iter().zip(found) {
             match part {
-                Some(part) if part.error < worst(numbers) => {
+                Some(part) if part.worst() < worst(numbers) => {
                     numbers.iter().for_each(|n| left[*n] = false);
                     quilt.take_all(part);
                 }
@@ -154,6 +155,7 @@ pub(super) fn complete(
             part.into_iter().for_each(|part| quilt.take_all(part));
         }
     }
+    quilt.leave(slopes, run)?;
     Ok(is_all)
 }
 

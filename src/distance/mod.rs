@@ -21,6 +21,7 @@ mod facets;
 mod mend;
 mod moved;
 mod outline;
+mod panes;
 mod piece;
 mod plots;
 mod quilt;
@@ -71,7 +72,7 @@ pub(crate) fn surface_with(solid: &Solid, run: &Run) -> Result<Arc<Surface>, Com
     }
     // Feet are refined on the field itself: a ten thousandth of the solid does.
     let length = 1e-1 * programs.bounds.longest_side();
-    let wanted = Wanted { length, tolerance: None, region: &Bounds::ALL };
+    let wanted = Wanted { length, tolerance: None, region: &Bounds::ALL, by_patches: true };
     surface(solid, &programs, &wanted, &FromMeshes, run)
 }
 

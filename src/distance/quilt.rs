@@ -12,12 +12,13 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::facets::{CREASE, Facets};
+use super::panes::{OFF, panes};
 use super::piece::{Piece, first};
 use super::plots::{Plot, Plots};
 use super::seam::Seams;
 use crate::mesh::Slopes;
 use crate::{Bounds, Cancelled, Run};
-use rvachev_field::Patch;
+use rvachev_field::{Patch, Patches};
 
 /// What is done for patches.
 #[derive(Clone, Copy)]
@@ -30,12 +31,14 @@ pub(super) struct Care {
     pub(super) depth: u32,
     /// No patch is split if there would be more than so many.
     pub(super) most: usize,
+    /// Whether flat patches become large ones.
+    pub(super) panes: bool,
 }
 
 impl Care {
     /// As much as is done for all of a surface.
     pub(super) fn new(tolerance: f64) -> Care {
-        Care { tolerance, patience: f64::INFINITY, depth: 6, most: MOST }
+        Care { tolerance, patience: f64::INFINITY, depth: 6, most: MOST, panes: true }
     }
 }
 
@@ -69,6 +72,9 @@ const BESIDE: f64 = 8.0;
 /// Patches that are farther off than this part of their width are left out.
 const ASTRAY: f64 = 0.4;
 
+/// So many steps lead from one that was left out to the surface.
+const STEPS: usize = 4;
+
 /// Where a patch is compared with the surface.
 const PROBES: [[f64; 3]; 4] = [[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
 
@@ -87,6 +93,8 @@ pub(super) struct Quilt {
     tolerance: f64,
     /// Patches that are far off.
     pub(super) spots: Vec<Spot>,
+    /// Patches that are farther off than they are wide.
+    astray: Vec<Patch>,
     /// Where patches are farther off than the tolerance, or miss something.
     doubts: Vec<Doubt>,
 }
@@ -132,7 +140,7 @@ impl Residual {
 impl Quilt {
     /// One that has these spots and nothing else, to be within a tolerance of the surface.
     pub(super) fn of(spots: Vec<Spot>, tolerance: f64) -> Quilt {
-        Quilt { patches: Vec::new(), error: 0.0, area: 0.0, tolerance, spots, doubts: Vec::new() }
+        Quilt { patches: Vec::new(), error: 0.0, area: 0.0, tolerance, spots, astray: Vec::new(), doubts: Vec::new() }
     }
 
     /// Patches of triangles near the surface; `None` if more than this part of them is far off and
@@ -165,13 +173,13 @@ impl Quilt {
         plot: Plot,
         left: usize,
         slopes: &Slopes<'_>,
-        Care { tolerance, depth: last, most, .. }: Care,
+        Care { tolerance, depth: last, most, panes: is_merged, .. }: Care,
         run: &Run,
     ) -> Result<f64, Cancelled> {
         let mut seams = Seams::default();
         let mut pieces = first(&plot, &mut seams);
         let mut positions = plot.facets.positions;
-        let mut far_off = 0.0;
+        let (mut far_off, mut flat) = (0.0, Vec::<(Piece, f64)>::new());
         for depth in 0..=last {
             seams.find(&pieces, &positions, slopes, run)?;
             let patch = |(number, piece): (usize, &Piece)| {
@@ -179,7 +187,7 @@ impl Quilt {
                 Ok(piece.patch(&positions, &seams, tolerance))
             };
             let patches = pieces.iter().enumerate().map(patch).collect::<Result<Vec<Patch>, Cancelled>>()?;
-            let is_enough = self.len() + left + 4 * pieces.len() > most;
+            let is_enough = self.len() + flat.len() + left + 4 * pieces.len() > most;
             let is_split = depth < last && !is_enough;
             let rims: Vec<f64> = pieces.iter().map(|piece| piece.rim(&seams)).collect();
             let is_off = |error: Residual| error.all() > tolerance || error.turn > TURN && error.off > 0.05 * tolerance;
@@ -198,10 +206,10 @@ impl Quilt {
                 far_off += off.map(|(own, _)| area_of(own)).sum::<f64>();
             }
             let mut next = Vec::new();
-            for (number, ((piece, patch), error)) in pieces.iter().zip(patches).zip(errors).enumerate() {
+            for (number, ((piece, patch), error)) in pieces.into_iter().zip(patches).zip(errors).enumerate() {
                 often(number, run)?;
                 let off = error.all();
-                if fails(piece, error) {
+                if fails(&piece, error) {
                     let from = next.len();
                     piece.split(&mut positions, &mut seams, &mut next);
                     next[from..].iter_mut().for_each(|part| part.before = off);
@@ -209,12 +217,20 @@ impl Quilt {
                 }
                 if off > FAR * tolerance {
                     self.spots.push(Spot { patch, off });
+                } else if is_merged && patch.is_flat() && off <= tolerance {
+                    self.note(&patch, off);
+                    flat.push((piece, off));
                 } else {
                     self.take(patch, off);
                 }
             }
             pieces = next;
             run.report(f64::from(depth + 1) / f64::from(last + 1));
+        }
+        for pane in panes(&flat, &positions, &seams, OFF * tolerance, run)? {
+            self.error = self.error.max(pane.off);
+            let patch = |corners: [u32; 3]| Patch::flat(corners.map(|v| positions[v as usize]));
+            self.patches.extend(pane.triangles.into_iter().map(patch));
         }
         Ok(far_off)
     }
@@ -224,19 +240,52 @@ impl Quilt {
         self.patches.len() + self.spots.len()
     }
 
-    /// Takes a patch that is so far off.
+    /// Takes a patch that is so far off. One that is farther off than it is wide tells nothing of
+    /// the surface.
     fn take(&mut self, patch: Patch, off: f64) {
-        self.note(&patch, off);
-        let [a, b, c] = patch.corners;
-        let width = a.distance(b).max(b.distance(c));
-        // One that is farther off than it is wide tells nothing of the surface.
-        if off > ASTRAY * width {
-            self.error = self.error.max(width);
-            self.doubts.push(Doubt::missed(patch.bounds().inflate(off.min(2.0 * width))));
+        if off > ASTRAY * width(&patch) {
+            self.astray.push(patch);
         } else {
+            self.note(&patch, off);
             self.error = self.error.max(off);
             self.patches.push(patch);
         }
+    }
+
+    /// How far off it is at most, if nothing is known beside patches that were left out.
+    pub(super) fn worst(&self) -> f64 {
+        self.astray.iter().map(width).fold(self.error, f64::max)
+    }
+
+    /// Tells what is missed without the patches that were left out: of the surface beside them what
+    /// is not near others, and all of their size where there is none.
+    pub(super) fn leave(&mut self, slopes: &Slopes<'_>, run: &Run) -> Result<(), Cancelled> {
+        let astray = std::mem::take(&mut self.astray);
+        if astray.is_empty() {
+            return Ok(());
+        }
+        let alone = Run { progress: None, ..run.clone() };
+        let known = Patches::new(&self.patches, &alone)?;
+        let mut feet: Vec<DVec3> = astray.iter().flat_map(|patch| patch.corners).collect();
+        let mut left = vec![f64::INFINITY; feet.len()];
+        for _ in 0..STEPS {
+            let found = slopes.at(&feet, &alone)?;
+            for ((foot, left), slope) in feet.iter_mut().zip(&mut left).zip(found) {
+                (*foot, *left) = (*foot + slope.newton(), slope.distance());
+            }
+        }
+        for (patch, (feet, left)) in astray.iter().zip(feet.chunks(3).zip(left.chunks(3))) {
+            let gap = |(foot, left): (&DVec3, &f64)| {
+                let is_foot = *left <= self.tolerance;
+                known.nearest(*foot).filter(|_| is_foot).map_or(f64::INFINITY, |near| near.distance)
+            };
+            let (gap, width) = (feet.iter().zip(left).map(gap).fold(0.0, f64::max), width(patch));
+            if gap > KNOWN * self.tolerance {
+                self.error = self.error.max(gap.min(width));
+                self.doubts.push(Doubt::missed(patch.bounds().inflate(gap.min(2.0 * width))));
+            }
+        }
+        Ok(())
     }
 
     /// Takes patches that are known to be at the surface, to within so much.
@@ -265,6 +314,7 @@ impl Quilt {
             is_near
         });
         self.area = area;
+        self.astray.retain(|patch| is_near(&patch.bounds()));
         self.doubts.retain(|doubt| is_near(&doubt.bounds));
         // Many parts are kept before they are taken together.
         self.patches.shrink_to_fit();
@@ -277,6 +327,7 @@ impl Quilt {
         self.patches.extend(other.patches);
         self.area += other.area;
         self.spots.extend(other.spots);
+        self.astray.extend(other.astray);
         self.doubts.extend(other.doubts);
     }
 
@@ -327,6 +378,12 @@ impl Doubt {
 /// Sees every now and then whether the work may go on.
 pub(super) fn often(number: usize, run: &Run) -> Result<(), Cancelled> {
     if number.is_multiple_of(4096) { run.check() } else { Ok(()) }
+}
+
+/// How long a patch is, more or less.
+fn width(patch: &Patch) -> f64 {
+    let [a, b, c] = patch.corners;
+    a.distance(b).max(b.distance(c))
 }
 
 /// The area of a patch's triangle.

@@ -125,7 +125,7 @@ impl DistanceSource for FromMeshes {
             // Two triangles a cell.
             let count = 0.5 * facets.triangles.len() as f64;
             let mut is_last = 4.0 * count > enough || count == 0.0 && cell < NOTHING * longest;
-            let mut care = Care::new(tolerance);
+            let mut care = Care { panes: !wanted.by_patches, ..Care::new(tolerance) };
             if !is_last && best.is_none() {
                 care.patience = PATIENCE;
             }

@@ -29,10 +29,68 @@ fn holed() -> Solid {
     plate - hole.translate([16.0, -12.0, 1.0]) - hole.rotate_y(deg(20.0)).translate([-16.0, 12.0, 1.0])
 }
 
+/// The patches that a length of 1 is measured from.
+fn few_patches(solid: &Solid) -> Arc<Patches> {
+    let wanted = Wanted { length: 1.0, tolerance: None, region: &Bounds::ALL, by_patches: false };
+    surface(solid, &compiled(solid).unwrap(), &wanted, &FromMeshes, &Run::default()).unwrap().patches.clone()
+}
+
 #[test]
 fn a_joint_face_to_face_hides_nothing() {
-    let patches = surface_of(&block()).unwrap().patches.clone();
-    assert!(patches.len() < 10_000, "{} patches of flat faces", patches.len());
+    let patches = few_patches(&block());
+    assert_eq!(patches.len(), 12, "patches of flat faces");
+}
+
+/// Of a plate with holes few triangles are left, which cover its faces and nothing else.
+#[test]
+fn flat_faces_are_few_patches() {
+    let plate = Solid::cuboid([60.0, 40.0, 6.0]);
+    let hole = Solid::cylinder(3.0, 30.0);
+    let solid = &plate - hole.translate([16.0, -12.0, 0.0]) - hole.translate([-16.0, 12.0, 0.0]);
+    let solid = solid.rotate_x(deg(20.0)).rotate_z(deg(40.0));
+    let patches = few_patches(&solid);
+    // Those that are looked at one by one are small.
+    let all = surface_of(&solid).unwrap().patches.len();
+    assert!(patches.len() < 3000 && 3 * patches.len() < 2 * all, "{} of {all}", patches.len());
+    let area = |n: usize| {
+        let [a, b, c] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|at| patches.point(n, at));
+        0.5 * (b - a).cross(c - a).length()
+    };
+    let holes = std::f64::consts::PI * 2.0 * (2.0 * 3.0 * 6.0 - 2.0 * 9.0);
+    let (found, right) = ((0..patches.len()).map(area).sum::<f64>(), 2.0 * (2400.0 + 360.0 + 240.0) + holes);
+    assert!((found / right - 1.0).abs() < 2e-3, "{found} of {right}");
+    let largest = (0..patches.len()).map(area).fold(0.0, f64::max);
+    assert!(largest > 100.0, "the largest has {largest}");
+}
+
+/// The inner face of a wall is told by flat faces and cylinders: no patch has to follow a hole.
+#[test]
+fn what_operands_know_is_not_measured() {
+    let (plate, hole) = (block(), Solid::cylinder(2.0, 20.0));
+    let solid = &plate - hole.translate([4.0, 0.0, 0.0]);
+    for made in [solid.shell(1.0), solid.offset(-1.0), solid.rounded(1.0), solid.named("part").offset(-1.0)] {
+        let accuracy = compiled(&made).unwrap().accuracy;
+        assert!(accuracy.error < 2e-3, "{made}: {accuracy:?}");
+    }
+    let known = compiled(&solid.offset(-1.0)).unwrap().accuracy;
+    let all = compiled(&solid.offset(1.0)).unwrap().accuracy;
+    assert!(known.error < 1e-5 && all.error > 1e-5, "{known:?}, {all:?}");
+    // A hole is larger by what the plate is smaller, and by what that is again.
+    let deep = solid.offset(-1.0);
+    for (made, by) in [(deep.offset(-0.5), 1.5), (!(!&deep).offset(0.5), 1.5), (deep.clone(), 1.0)] {
+        for (p, far) in [(DVec3::new(7.0, 0.0, 0.0), 1.0), (DVec3::new(4.0, 2.3, 1.0), 0.3), (DVec3::X * -8.0, 2.0)] {
+            let value = made.value(p).unwrap();
+            assert!((value - (far - by)).abs() < 1e-5, "{value} at {p}, moved by {by}");
+        }
+    }
+    // Outside of a union the same holds.
+    let ball = Solid::superellipsoid([4.0, 3.0, 5.0], 0.5, 0.7);
+    let union = (&ball | Solid::cuboid([20.0, 1.0, 1.0])).offset(0.5);
+    let alone = ball.offset(0.5);
+    assert_eq!(compiled(&union).unwrap().accuracy, compiled(&alone).unwrap().accuracy);
+    let p = DVec3::new(0.5, 3.2, 0.1);
+    assert!((union.value(p).unwrap() - alone.value(p).unwrap()).abs() < 1e-9);
+    assert!((union.value([10.2, 0.0, 0.0]).unwrap() - 0.3).abs() < 1e-9);
 }
 
 /// Boxes that cut a slab off at all angles: of their own faces nothing is left, and of the slab's
@@ -121,8 +179,8 @@ fn plots_are_told_of_what_is_beyond_their_sides() {
 
 #[test]
 fn rims_of_holes_are_on_the_surface() {
-    let shell = holed().shell(1.0);
-    let accuracy = compiled(&shell).unwrap().accuracy;
+    // Outside of a difference holes are measured, too.
+    let accuracy = compiled(&holed().offset(1.0)).unwrap().accuracy;
     assert!(accuracy.error <= 8.0 * accuracy.tolerance, "{accuracy:?}");
 }
 
@@ -232,10 +290,36 @@ fn nothing_is_doubtful_of_patches_that_were_left_out() {
     assert_eq!((quilt.patches.len(), quilt.doubts(1e-3).len(), quilt.reached(1e-4)), (1, 1, 2e-3));
 }
 
+/// A patch that tells nothing of the surface counts by what would be missed without it.
+#[test]
+fn patches_that_are_left_out_count_by_what_is_missed() {
+    const TOLERANCE: f64 = 1e-3;
+    let cube = Solid::cuboid([10.0; 3]);
+    let programs = compiled(&cube).unwrap();
+    let slopes = Slopes { program: &programs.surface, precision: TOLERANCE };
+    let top = [DVec3::new(-5.0, -5.0, 5.0), DVec3::new(5.0, -5.0, 5.0), DVec3::new(5.0, 5.0, 5.0)];
+    let sliver = |at: DVec3| Spot {
+        patch: Patch::flat([DVec3::ZERO, 0.1 * DVec3::X, 0.1 * DVec3::Y].map(|p| at + p)),
+        off: 0.3,
+    };
+    let left = |at: [f64; 3]| {
+        let mut quilt = Quilt::of(vec![sliver(at.into())], TOLERANCE);
+        quilt.add_all([(Patch::flat(top), 0.0)].into_iter());
+        let spots = std::mem::take(&mut quilt.spots);
+        quilt.take_spots(spots);
+        quilt.leave(&slopes, &Run::default()).unwrap();
+        assert_eq!(quilt.patches.len(), 1);
+        (quilt.error, quilt.doubts(TOLERANCE).len(), quilt.reached(1e-4))
+    };
+    assert_eq!(left([2.0, -2.0, 5.3]), (0.0, 0, TOLERANCE));
+    let (error, doubts, reached) = left([2.0, -2.0, -5.3]);
+    assert!((error - 0.1 * 2f64.sqrt()).abs() < 1e-9 && doubts == 1 && reached == TOLERANCE, "{error}, {doubts}");
+}
+
 #[test]
 fn equal_solids_have_one_surface() {
     let surface = |solid: &Solid, length: f64, tolerance: Option<f64>| {
-        let wanted = Wanted { length, tolerance, region: &Bounds::ALL };
+        let wanted = Wanted { length, tolerance, region: &Bounds::ALL, by_patches: false };
         surface(solid, &compiled(solid).unwrap(), &wanted, &FromMeshes, &Run::default()).unwrap()
     };
     // Of no other test.

@@ -14,6 +14,7 @@ use super::depth::is_deeper;
 use super::exact::Exactness;
 use super::fill::FARTHEST;
 use super::nothing::Nothing;
+use super::sided::{Found, Side, divided, sided};
 use super::source::{CompileError, DistanceSource, Measured, Surface, Wanted, reach, surface};
 use super::tiles::Tiles;
 use crate::solid::{BALL_OF_LEGS, Length, Node, Operation};
@@ -94,22 +95,24 @@ pub(super) fn measure(
     let tolerance = solid.node().tolerance();
     let found = match solid.node() {
         Node::Length { ball: Some(ball), length, .. } => {
-            let wanted = Wanted { length: length.amount(), tolerance, region: &Bounds::ALL };
+            let wanted = Wanted { length: length.amount(), tolerance, region: &Bounds::ALL, by_patches: false };
             let (field, accuracy) = distance(ball, &wanted, source, run)?;
             // Of an opening nothing is left if there is no room for the ball, of a closing if
             // there was nothing to close.
             let is_gone = kept(ball).is_none_or(|programs| programs.bounds.is_empty());
-            Measured { field, accuracy, is_gone, sides: Vec::new() }
+            Measured { field, parts: None, accuracy, is_gone, sides: Vec::new() }
         }
         Node::Length { operand, length, about, .. } => {
             let inwards = length.inwards();
             let Some(programs) = kept(operand) else { return Ok(()) };
-            let (field, accuracy) = match exact.is_closed(solid) {
-                true => (sign(&programs), Accuracy::default()),
+            let (field, parts, accuracy) = match exact.is_closed(solid) {
+                true => (sign(&programs), None, Accuracy::default()),
                 false => {
                     let region = about.map_or(Bounds::ALL, |blend| region_of_ball(operand, blend, &programs.bounds));
-                    let wanted = Wanted { length: inwards.abs(), tolerance, region: &region };
-                    distance(operand, &wanted, source, run)?
+                    let wanted = Wanted { length: inwards.abs(), tolerance, region: &region, by_patches: false };
+                    let side = if inwards > 0.0 { Side::Inside } else { Side::Outside };
+                    let Found { field, parts, accuracy } = sided((operand, side), &wanted, exact, source, run)?;
+                    (field, parts, accuracy)
                 }
             };
             let mut bounds = programs.bounds;
@@ -120,30 +123,41 @@ pub(super) fn measure(
             let is_thin = inwards > 0.0 && bounds.is_finite();
             let is_gone =
                 bounds.is_empty() || is_thin && !is_deeper(&*field, &bounds, accuracy.tolerance + inwards, run)?;
-            Measured { field, accuracy, is_gone, sides: Vec::new() }
+            Measured { field, parts, accuracy, is_gone, sides: Vec::new() }
         }
         Node::Blend { operation, blend, operands, ball: Some(ball), .. } => {
             let near = Near::of(*operation, *blend, operands);
             let region = near.region();
-            let wanted = Wanted { length: near.radius, tolerance, region: &region };
+            let wanted = Wanted { length: near.radius, tolerance, region: &region, by_patches: false };
             // The ball's distance, and those of the operands.
             let count = if near.fades { 1 + operands.len() } else { 1 };
             let stage = |number: usize| run.stage(number as f64 / count as f64, (number + 1) as f64 / count as f64);
             let (field, accuracy) = distance(ball, &wanted, source, &stage(0))?;
             let mut sides = Vec::new();
+            // An operand that the ball's own distance is measured from has one surface for both.
+            let shared = match ball.node() {
+                Node::Length { operand: joined, .. } => kept(joined).and_then(|programs| {
+                    let side = if *operation == Operation::Union { Side::Outside } else { Side::Inside };
+                    let (.., rest) = divided(joined, side, exact)?;
+                    Some((rest.address(), region_of_ball(joined, *blend, &programs.bounds)))
+                }),
+                _ => None,
+            };
             if near.fades {
                 for (number, operand) in operands.iter().enumerate() {
                     let is_outside =
                         *operation == Operation::Union || *operation == Operation::Difference && number > 0;
                     let own = exact.of(operand);
                     let known = if is_outside { own.outside } else { own.inside };
+                    let shared = shared.as_ref().filter(|(rest, _)| *rest == operand.address());
+                    let wanted = Wanted { region: shared.map_or(&region, |(_, region)| region), ..wanted };
                     sides.push(match kept(operand).filter(|_| known) {
                         Some(programs) => sign(&programs),
                         None => distance(operand, &wanted, source, &stage(1 + number))?.0,
                     });
                 }
             }
-            Measured { field, accuracy, is_gone: false, sides }
+            Measured { field, parts: None, accuracy, is_gone: false, sides }
         }
         _ => return Ok(()),
     };
@@ -157,7 +171,7 @@ pub(super) fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
 }
 
 /// The distance to the surface of a solid, and how far it may be off.
-fn distance(
+pub(super) fn distance(
     solid: &Solid,
     wanted: &Wanted<'_>,
     source: &'static dyn DistanceSource,

@@ -17,11 +17,18 @@ use rvachev_num::symbol::Symbol;
 struct Composite {
     program: Whole,
     bounds: Bounds,
+    /// Whether its value is the true distance on one side, and nowhere steeper.
+    is_distance: bool,
 }
 
 /// A program as a leaf, which is within the bounds.
 pub(crate) fn as_leaf(program: Program, bounds: Bounds) -> Arc<dyn AnyField> {
-    Arc::new(Composite { program: Whole::new(program), bounds })
+    Arc::new(Composite { program: Whole::new(program), bounds, is_distance: false })
+}
+
+/// The same of one whose value is the true distance on the side that it is asked for.
+pub(super) fn as_distance(program: Program, bounds: Bounds) -> Arc<dyn AnyField> {
+    Arc::new(Composite { program: Whole::new(program), bounds, is_distance: true })
 }
 
 /// A program with its tape over all of space, which is made when lanes first ask for it.
@@ -89,7 +96,11 @@ impl AnyField for Composite {
     }
 
     fn exact(&self) -> bool {
-        false
+        self.is_distance
+    }
+
+    fn growth(&self) -> DVec3 {
+        if self.is_distance { DVec3::ONE } else { DVec3::INFINITY }
     }
 
     fn convex(&self) -> bool {
@@ -156,7 +167,8 @@ impl AnyField for Composite {
             return None;
         }
         let program = self.program.reduced(zone);
-        (program.leaf_count() < self.program.leaf_count()).then(|| as_leaf(program, self.bounds))
+        let is_simpler = program.leaf_count() < self.program.leaf_count();
+        is_simpler.then(|| Arc::new(Composite { program: Whole::new(program), ..*self }) as Arc<dyn AnyField>)
     }
 
     fn jumps(&self) -> bool {

@@ -27,7 +27,6 @@ use glam::{DAffine3, DVec3};
 use super::composite::unscaled;
 use super::even::{either, ends};
 use super::few::{Few, Lane};
-use super::list::List;
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::VALUE_LIMIT;
 use rvachev_field::kernel::{distinct, repeat};
@@ -149,14 +148,15 @@ impl Fill {
     /// The gradient of the height, from those of what it is made of.
     fn slope(&self, ball: f64, slope: DVec3, two: Option<Two>, side: impl Fn(usize) -> DVec3) -> DVec3 {
         let mut all = if ball - self.radius < MOST * self.radius { slope } else { DVec3::ZERO };
-        if let Some(Two { distances: [a, b], sides }) = two
-            && a + b > 2.0 * self.radius
-        {
-            for number in sides.into_iter().filter(|number| *number < self.sides.len()) {
-                all -= FADE * side(number);
-            }
-        }
+        self.fading(two).for_each(|number| all -= FADE * side(number));
         all
+    }
+
+    /// The operands that the fillet fades away from.
+    fn fading(&self, two: Option<Two>) -> impl Iterator<Item = usize> + use<> {
+        let count = self.sides.len();
+        let fades = two.filter(|Two { distances: [a, b], .. }| a + b > 2.0 * self.radius);
+        fades.into_iter().flat_map(|two| two.sides).filter(move |number| *number < count)
     }
 
     /// How deep inside of the boxes a point is, and along which axis that grows.
@@ -395,46 +395,58 @@ impl AnyField for Fill {
         self.values(chunk, f64::INFINITY);
     }
 
+    /// Operands are asked for their slopes where the fillet fades away, and nowhere else.
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let Chunk { points, placement, out } = chunk;
-        let frame = unscaled(placement);
-        let count = points[0].len();
-        let slopes = |side: &Signed| {
-            let mut out = [(); 4].map(|()| List::zeroes(count));
-            let [value, x, y, z] = &mut out;
-            side.field.gradients(Chunk { points, placement: &frame, out: [value, x, y, z] });
-            out
-        };
-        let of = |list: &[List; 4], sign: f64, i: usize| {
-            let [x, y, z] = [1, 2, 3].map(|k| sign * f64::from(list[k][i]));
-            DVec3::new(x, y, z)
-        };
-        let own = distinct(points);
+        let (own, count) = (unscaled(placement), distinct(points));
         let local = |i: usize| DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
-        let is_far = (0..own).all(|i| self.depth(local(i)).0 < self.lowest());
-        let asked = |side: &Signed| if is_far { [(); 4].map(|()| List::zeroes(count)) } else { slopes(side) };
-        let ball = asked(&self.ball);
-        let sides: Vec<[List; 4]> = self.sides.iter().map(|side| asked(&side.distance)).collect();
-        let [value, dx, dy, dz] = out;
-        for i in 0..own {
-            let local = local(i);
-            let two = self.two_of(local, |number| self.sides[number].distance.sign * f64::from(sides[number][0][i]));
-            let (v, (depth, way)) = (self.ball.sign * f64::from(ball[0][i]), self.depth(local));
-            let height = self.height(v, two);
-            // The slopes of parts are those of the frame that the points are in.
-            let (v, slope) = if depth < height {
+        // The slopes of parts are those of the frame that the points are in.
+        let mut all: Vec<(f64, DVec3)> = (0..count)
+            .map(|i| {
+                let (depth, way) = self.depth(local(i));
                 (depth, DVec3::from_array(placement.pull(way.to_array())))
-            } else if height <= self.lowest() {
-                (height, DVec3::ZERO)
-            } else {
-                let side = |number: usize| of(&sides[number], self.sides[number].distance.sign, i);
-                (height, self.slope(v, of(&ball, self.ball.sign, i), two, side))
-            };
+            })
+            .collect();
+        let open = Few::of((0..count).filter(|i| all[*i].0 >= self.lowest()), points);
+        let balls = open.slopes(&self.ball, &own);
+        let is_near = |(n, _): &(usize, &usize)| self.height(balls[*n].0, None) > self.lowest();
+        let near: Vec<usize> = open.places.iter().enumerate().filter(is_near).map(|(n, _)| n).collect();
+        let asked = Few::of(near.iter().map(|n| open.places[*n]), points);
+        let sides: Vec<Vec<f64>> = (self.sides.iter())
+            .map(|side| asked.values(&side.distance, &own, (2.0 * self.radius, self.farthest())))
+            .collect();
+        let mut twos = vec![None; count];
+        for (n, &i) in asked.places.iter().enumerate() {
+            twos[i] = self.two_of(local(i), |number| sides[number][n]);
+        }
+        let mut fading: Vec<(usize, usize)> = Vec::new();
+        for (&i, &(ball, slope)) in open.places.iter().zip(&balls) {
+            let height = self.height(ball, twos[i]);
+            if all[i].0 < height {
+                continue;
+            }
+            all[i] = (height, DVec3::ZERO);
+            if height > self.lowest() {
+                all[i].1 = self.slope(ball, slope, None, |_| DVec3::ZERO);
+                fading.extend(self.fading(twos[i]).map(|number| (number, i)));
+            }
+        }
+        for (number, side) in self.sides.iter().enumerate() {
+            let here = Few::of(fading.iter().filter(|(own, _)| *own == number).map(|(_, i)| *i), points);
+            if here.places.is_empty() {
+                continue;
+            }
+            for (i, (_, slope)) in here.places.iter().zip(here.slopes(&side.distance, &own)) {
+                all[*i].1 -= FADE * slope;
+            }
+        }
+        let [value, dx, dy, dz] = out;
+        for (i, (v, slope)) in all.into_iter().enumerate() {
             value[i] = placement.finish(v) as f32;
             let scaled = slope * placement.scale;
             (dx[i], dy[i], dz[i]) = (scaled.x as f32, scaled.y as f32, scaled.z as f32);
         }
-        [value, dx, dy, dz].into_iter().for_each(|list| repeat(list, own));
+        [value, dx, dy, dz].into_iter().for_each(|list| repeat(list, count));
     }
 
     fn cost(&self) -> usize {

@@ -54,6 +54,7 @@ mod sampled;
 mod scene;
 mod seamless;
 mod shares;
+mod sided;
 mod sides;
 mod source;
 mod support;

@@ -9,6 +9,7 @@ use std::sync::{Arc, OnceLock};
 use super::accuracy::Accuracy;
 use super::compile::Compiled;
 use super::runs::Runs;
+use crate::solid::Operation;
 use crate::{Bounds, Cancelled, Solid, SolidError};
 use rvachev_field::{AnyField, Patches};
 use rvachev_num::Run;
@@ -40,6 +41,8 @@ pub(crate) struct Wanted<'a> {
     pub(crate) tolerance: Option<f64>,
     /// Where they are asked for.
     pub(crate) region: &'a Bounds,
+    /// Whether patches are looked at one by one, and are to be small: else flat faces are few.
+    pub(crate) by_patches: bool,
 }
 
 /// Distances are asked up to so many lengths from a region.
@@ -105,6 +108,7 @@ impl Surface {
 struct KeptSurface {
     tolerance: f64,
     near: Bounds,
+    by_patches: bool,
     surface: Arc<Surface>,
 }
 
@@ -119,7 +123,9 @@ pub(crate) fn surface(
 ) -> Result<Arc<Surface>, CompileError> {
     let (tolerance, near) = (source.tolerance(programs, wanted), wanted.near());
     // A finer one would do as well; but what is found is not to hang on what was asked before.
-    let is_same = |kept: &KeptSurface| kept.tolerance == tolerance && kept.near == near;
+    let by_patches = wanted.by_patches;
+    let is_same =
+        |kept: &KeptSurface| kept.tolerance == tolerance && kept.near == near && kept.by_patches == by_patches;
     if let Some(kept) = solid.shelf().find(is_same) {
         run.report(1.0);
         return Ok(kept.surface.clone());
@@ -129,7 +135,7 @@ pub(crate) fn surface(
     if let Some(kept) = solid.shelf().find(is_same) {
         return Ok(kept.surface.clone());
     }
-    solid.shelf().keep(Arc::new(KeptSurface { tolerance, near, surface: surface.clone() }));
+    solid.shelf().keep(Arc::new(KeptSurface { tolerance, near, by_patches, surface: surface.clone() }));
     Ok(surface)
 }
 
@@ -139,12 +145,21 @@ pub(crate) struct Measured {
     /// The signed distance to a surface, in the node's own coordinates: that of a length's operand,
     /// or of where a ball's centre may be.
     pub(crate) field: Arc<dyn AnyField>,
+    /// The distances that it is a join of, if it is one.
+    pub(crate) parts: Option<Parts>,
     /// How far it may be off.
     pub(crate) accuracy: Accuracy,
     /// Whether nothing is left where the length is taken away.
     pub(crate) is_gone: bool,
     /// For a fillet, the distances to its operands, on the side where the ball is.
     pub(crate) sides: Vec<Arc<dyn AnyField>>,
+}
+
+/// A join of distances.
+#[derive(Clone)]
+pub(crate) struct Parts {
+    pub(crate) operation: Operation,
+    pub(crate) fields: Arc<[Arc<dyn AnyField>]>,
 }
 
 /// Why a solid does not compile.

@@ -130,7 +130,7 @@ impl Tiles {
     }
 
     fn wanted<'a>(&self, region: &'a Bounds) -> Wanted<'a> {
-        Wanted { length: self.length, tolerance: self.tolerance, region }
+        Wanted { length: self.length, tolerance: self.tolerance, region, by_patches: false }
     }
 
     /// The tile with a number.

@@ -14,9 +14,10 @@ use crate::eval::nothing::Nothing;
 use crate::eval::program::Kind;
 use crate::eval::scene::Instance;
 use crate::eval::sides::Sides;
-use crate::eval::source::Measured;
+use crate::eval::source::{Measured, Parts};
 use crate::eval::swell::Swell;
-use rvachev_field::{AnyField, Placement, largest_stretch};
+use crate::solid::Operation;
+use rvachev_field::{AnyField, Placement, Rule, largest_stretch};
 use rvachev_num::column_times;
 
 impl Compiler<'_> {
@@ -28,6 +29,16 @@ impl Compiler<'_> {
     /// The surface of a length's operand as a leaf, its distance moved by `by`.
     pub(super) fn measured(&mut self, site: Site<'_>, by: f64) -> Built {
         match measured(site.solid) {
+            Some(Measured { parts: Some(Parts { operation, fields }), .. }) => {
+                let shift = self.shift(site, by);
+                let part = |(number, field)| {
+                    let is_taken_away = operation == Operation::Difference && number > 0;
+                    self.made_at(field, site, if is_taken_away { -shift } else { shift })
+                };
+                let parts: Vec<Built> = fields.iter().enumerate().map(part).collect();
+                let frame = self.contexts.get(site.context).frame;
+                self.code.operation(operation, Rule::MinMax, frame, &parts)
+            }
             Some(Measured { field, .. }) => self.made(&field, site, by),
             None => self.nothing(site),
         }
@@ -40,6 +51,17 @@ impl Compiler<'_> {
 
     /// A leaf that is made of a node's operands and has their paint, its value moved by `by`.
     pub(super) fn made(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, by: f64) -> Built {
+        let shift = self.shift(site, by);
+        self.made_at(field, site, shift)
+    }
+
+    /// What is added to values that are moved by `by`, in the frame's unit.
+    fn shift(&self, site: Site<'_>, by: f64) -> f64 {
+        let context = self.contexts.get(site.context);
+        context.shift.unwrap_or(0.0) + by * context.scale
+    }
+
+    fn made_at(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> Built {
         self.coats.insert(self.scene.leaves.len() as u32, Coat::of(site.solid));
         let matrix = &self.contexts.get(site.context).forward.matrix3;
         // The largest of a map that stretches all directions alike is known to the last bit.
@@ -47,8 +69,6 @@ impl Compiler<'_> {
         if let Some(measured) = measured(site.solid) {
             self.accuracy = self.accuracy.max(measured.accuracy.times(stretch));
         }
-        let context = self.contexts.get(site.context);
-        let shift = context.shift.unwrap_or(0.0) + by * context.scale;
         self.shifted(field, site, shift)
     }
 

@@ -6,7 +6,7 @@
 use glam::DVec3;
 use rvachev_num::Interval;
 
-use super::face::double;
+use super::face::{SLACK, double};
 use super::hierarchy::PARENT;
 use super::{Patches, SurfaceDistance};
 use crate::{Way, Zone, bits};
@@ -55,16 +55,30 @@ impl Patches {
                 open.extend([node.first, node.first + 1]);
                 continue;
             }
-            count += node.count as usize;
-            if count > MANY {
-                return None;
-            }
             for at in node.first..node.first + node.count {
+                if self.is_far(at as usize, local, reach) {
+                    continue;
+                }
+                count += 1;
+                if count > MANY {
+                    return None;
+                }
                 let (low, high) = self.slopes_of(at as usize);
                 (least, most) = (least.min(low), most.max(high));
             }
         }
         (count > 0).then(|| [0, 1, 2].map(|axis| Interval::new(least[axis], most[axis])))
+    }
+
+    /// Whether a patch is farther from a point of the surface's frame than this, as far as its box and
+    /// its plane tell.
+    fn is_far(&self, at: usize, local: DVec3, reach: f64) -> bool {
+        let Some((face, sides)) = self.at(at) else { return false };
+        let [a, e, f] = [face.a, sides.e, sides.f].map(double);
+        let (b, c) = (a + e, a + f);
+        let beside = local.distance(local.clamp(a.min(b).min(c), a.max(b).max(c)));
+        let above = e.cross(f).normalize_or_zero().dot(local - a).abs();
+        beside.max(above) > reach + f64::from(face.sag) + SLACK
     }
 
     /// A box of the vectors against a patch's normals.

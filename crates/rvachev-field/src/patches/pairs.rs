@@ -135,10 +135,11 @@ impl<L: Lanes<Element: Element> + Packet> Pairs<L> {
     /// Finds the nearest points of all pairs.
     #[inline(always)]
     fn solve(&mut self, simd: L::Token, patches: &Patches, block: &Block<L::Element>, found: &mut Found<L::Element>) {
+        // Every lane that is read is written before.
+        let mut rows = [[L::Element::default(); WIDEST]; ROWS];
         let mut from = 0;
         while from < self.pairs.len() {
             let pairs = &self.pairs[from..self.pairs.len().min(from + L::WIDTH)];
-            let mut rows = [[L::Element::default(); WIDEST]; ROWS];
             for lane in 0..L::WIDTH {
                 let (point, at) = pairs[lane.min(pairs.len() - 1)];
                 fill(&mut rows, lane, patches, at as usize, block.point(point as usize));
