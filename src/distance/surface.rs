@@ -12,7 +12,7 @@ use super::quilt::{Care, GROSS, KNOWN, Quilt};
 use super::sheets::cover;
 use super::strips::strips;
 use crate::error::MeshingError;
-use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted, reach};
+use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted};
 use crate::mesh::{Hidden, Slopes, Subject};
 use crate::{Bounds, Mesh, RFunction, Run, Solid, SolidError};
 use rvachev_field::Patches;
@@ -227,7 +227,7 @@ fn farthest(bounds: &Bounds, size: f64) -> f64 {
 /// What of a solid is to be measured: its box, the axis along which it is a cylinder, and its size
 /// across that.
 fn extent(programs: &Compiled, wanted: &Wanted<'_>) -> (Bounds, Option<usize>, f64) {
-    let reach = reach(wanted.length, programs.bounds.longest_side());
+    let reach = wanted.reach(programs.bounds.longest_side());
     let bounds = programs.bounds.intersection(&wanted.region.inflate(reach));
     let flat = programs.flat_axis();
     let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);

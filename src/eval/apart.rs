@@ -139,7 +139,8 @@ pub(super) fn measure(
                 Node::Length { operand: joined, .. } => kept(joined).and_then(|programs| {
                     let side = if *operation == Operation::Union { Side::Outside } else { Side::Inside };
                     let (.., rest) = divided(joined, side, exact)?;
-                    Some((rest.address(), region_of_ball(joined, *blend, &programs.bounds)))
+                    let region = region_of_ball(joined, *blend, &programs.bounds);
+                    Some((rest.address(), side.region(&region, &programs.bounds)))
                 }),
                 _ => None,
             };

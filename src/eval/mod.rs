@@ -89,5 +89,5 @@ pub(crate) use ray::{Care, bracket, first_hit};
 pub(crate) use runs::Block;
 pub(crate) use rvachev_field::{Crease, Op};
 pub(crate) use scene::Instance;
-pub(crate) use source::{CompileError, DistanceSource, Surface, Wanted, reach, surface};
+pub(crate) use source::{CompileError, DistanceSource, Surface, Wanted, surface};
 pub(crate) use thin::SlenderLeaf;

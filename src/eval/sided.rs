@@ -15,7 +15,7 @@ use super::composite::as_distance;
 use super::exact::Exactness;
 use super::source::{CompileError, DistanceSource, Parts, Wanted};
 use crate::solid::{Node, Operation};
-use crate::{RFunction, Run, Solid};
+use crate::{Bounds, RFunction, Run, Solid};
 use rvachev_field::AnyField;
 
 /// A side of a surface.
@@ -23,6 +23,17 @@ use rvachev_field::AnyField;
 pub(super) enum Side {
     Inside,
     Outside,
+}
+
+impl Side {
+    /// Where an operand of a solid that is within bounds is asked for: from inside the solid, what is
+    /// beyond them is farther than what cuts it off there.
+    pub(super) fn region(self, region: &Bounds, bounds: &Bounds) -> Bounds {
+        match self {
+            Side::Inside if region.intersects(bounds) => region.intersection(bounds),
+            _ => *region,
+        }
+    }
 }
 
 /// A distance that counts on one side.
@@ -47,7 +58,8 @@ pub(super) fn sided(
         let (field, accuracy) = distance(solid, wanted, source, run)?;
         return Ok(Found { field, parts: None, accuracy });
     };
-    let rest = sided((&rest, side), wanted, exact, source, run)?;
+    let region = kept(solid).map_or(*wanted.region, |programs| side.region(wanted.region, &programs.bounds));
+    let rest = sided((&rest, side), &Wanted { region: &region, ..*wanted }, exact, source, run)?;
     let (mut fields, mut accuracy) = (vec![rest.field], rest.accuracy);
     for operand in &known {
         let programs = compile(operand, source, run)?;

@@ -53,12 +53,19 @@ const BESIDE: f64 = 0.05;
 
 /// How far beyond a region a surface is found for lengths that are asked for in it, of a solid of a
 /// size.
-pub(crate) fn reach(length: f64, size: f64) -> f64 {
+pub(super) fn reach(length: f64, size: f64) -> f64 {
     let beside = if size.is_finite() { BESIDE * size } else { 0.0 };
     beside.max(REACH * length)
 }
 
 impl Wanted<'_> {
+    /// How far beyond the region a surface is found, of a solid of a size. What is cut out of
+    /// something large becomes no more than twice as large by it.
+    pub(crate) fn reach(&self, size: f64) -> f64 {
+        let twice = self.region.longest_side() / (2.0 * BESIDE);
+        reach(self.length, if size.is_finite() { size.min(twice) } else { size })
+    }
+
     /// Where the surface is needed.
     pub(crate) fn near(&self) -> Bounds {
         self.region.inflate(REACH * self.length)

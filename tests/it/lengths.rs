@@ -823,3 +823,25 @@ fn an_offset_lattice_is_at_its_distance_where_it_is_cut() -> Outcome {
     assert_eq!(mesh.shells, 1, "{mesh}");
     Ok(())
 }
+
+/// What is cut off far away does not make lengths coarser.
+#[test]
+fn large_operands_are_measured_where_they_are_cut() -> Outcome {
+    let cube = Solid::cuboid([10.0, 8.0, 6.0]);
+    let large = at(Solid::superellipsoid([1000.0, 900.0, 800.0], 0.5, 0.7), [997.0, 0.0, 0.0]);
+    let long = Solid::cuboid([4.0, 3.0, 4000.0]).twist(rad(0.1));
+    let mut random = Random::new(3426);
+    for solid in [&large & &cube, &long & &cube, &cube - &long, &cube & &long & &large] {
+        let [inwards, outwards] = [-0.1, 0.1].map(|by| solid.offset(by));
+        let [told, right] = [inwards.accuracy()?, outwards.accuracy()?];
+        assert!(told.tolerance <= right.tolerance && told.error <= 2.0 * right.tolerance, "{told:?}, {right:?}");
+        for _ in 0..200 {
+            let p = random.point_in(&solid.bounds()?);
+            if solid.contains(p)? {
+                let [a, b] = [inwards.value(p)? + 0.1, outwards.value(p)? - 0.1];
+                assert!((a - b).abs() < 2e-3, "{solid:?}: {a} and {b} at {p}");
+            }
+        }
+    }
+    Ok(())
+}
