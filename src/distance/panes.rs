@@ -2,12 +2,16 @@
 //! planes).
 //!
 //! ```text
-//!     .__.__.__.__.           .___________.      A vertex within a pane goes to one of its neighbours, and so
-//!     |\ |\ |\ |\ |           |\_         |      does one that is between two others on a straight rim, as long as
-//!     |_\|_\|_\|_\|    ->     |  \___     |      no triangle turns over or gets slender. The rim stays as it is:
-//!     |\ |\ |\ |\ |           |      \__  |      it is what neighbours are sewn to.
+//!     .__.__.__.__.           .___________.
+//!     |\ |\ |\ |\ |           |\_         |
+//!     |_\|_\|_\|_\|    ->     |  \___     |
+//!     |\ |\ |\ |\ |           |      \__  |
 //!     |_\|_\|_\|_\|           |_________\_|
 //! ```
+//!
+//! A vertex within a pane goes to one of its neighbours, and so does one that is between two others
+//! on a straight rim, as long as no triangle turns over or gets slender. The rim stays as it is: it
+//! is what neighbours are sewn to.
 
 use glam::{DVec2, DVec3};
 
@@ -40,7 +44,7 @@ pub(super) fn panes(
     slack: f64,
     run: &Run,
 ) -> Result<Vec<Pane>, Cancelled> {
-    // By side, the pieces on either side of it; where there are more, none is the other's neighbour.
+    // By side, the pieces on either side of it; of more than two none is the other's neighbour.
     let mut beside = vec![[NONE; 2]; seams.list.len()];
     for (number, (piece, _)) in flat.iter().enumerate() {
         for hem in piece.hems {

@@ -3,7 +3,7 @@
 //! ```text
 //!     outside of a union           the least of the distances outside of its operands
 //!     inside of an intersection    the least of those inside of them
-//!     inside of a difference       the least of that inside of the first and those outside of the others
+//!     inside of a difference       the least of that inside of the first, and outside of the others
 //! ```
 
 use std::sync::Arc;
@@ -26,8 +26,8 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// Where an operand of a solid that is within bounds is asked for: from inside the solid, what is
-    /// beyond them is farther than what cuts it off there.
+    /// Where an operand of a solid that is within bounds is asked for: from inside the solid, what
+    /// is beyond them is farther than what cuts it off there.
     pub(super) fn region(self, region: &Bounds, bounds: &Bounds) -> Bounds {
         match self {
             Side::Inside if region.intersects(bounds) => region.intersection(bounds),
@@ -44,8 +44,8 @@ pub(super) struct Found {
     pub(super) accuracy: Accuracy,
 }
 
-/// The distance on one side of the surface of a solid, and how far it may be off.
-/// What operands tell themselves is not measured: the others are, together.
+/// The distance on one side of the surface of a solid, and how far it may be off. What operands
+/// tell themselves is not measured: the others are, together.
 pub(super) fn sided(
     (solid, side): (&Solid, Side),
     wanted: &Wanted<'_>,

@@ -65,8 +65,7 @@ pub(super) fn unresolved_cells(
         let cells = search.found;
         Ok(Some(Unresolved { block, cells }).filter(|found| !found.cells.is_empty()))
     };
-    let found = jobs::in_order_with(blocks.cells.len(), || sampler.scratch(), of_block);
-    let found = found.into_iter().collect::<Result<Vec<_>, Cancelled>>()?;
+    let found = jobs::try_in_order_with(blocks.cells.len(), || sampler.scratch(), of_block)?;
     Ok(found.into_iter().flatten().collect())
 }
 

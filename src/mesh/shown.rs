@@ -139,8 +139,7 @@ impl Subject<'_> {
             }
             Ok(found)
         };
-        let found = jobs::in_order_with(blocks.cells.len(), || sampler.scratch(), of_block);
-        Ok(found.into_iter().collect::<Result<Vec<_>, Cancelled>>()?.concat())
+        Ok(jobs::try_in_order_with(blocks.cells.len(), || sampler.scratch(), of_block)?.concat())
     }
 
     /// Whether all nodes of a cell and of those about it are on one side.

@@ -161,11 +161,9 @@ impl RasterView {
                 meter.check()?;
                 let target = plan.tile(operands, &Tile::number(number as u32, self.width, self.height), scratch);
                 meter.add(1);
-                Ok(target)
+                Ok::<_, RasterError>(target)
             };
-            jobs::in_order_with(count as usize, intervals::Scratch::default, tile)
-                .into_iter()
-                .collect::<Result<_, RasterError>>()
+            jobs::try_in_order_with(count as usize, intervals::Scratch::default, tile)
         })?;
         Ok(Buffers { view: *self, tiles })
     }

@@ -26,7 +26,19 @@ pub fn in_order<T: Send>(count: usize, job: impl Fn(usize) -> T + Sync) -> Vec<T
 /// # Errors
 /// That of the first job that has one.
 pub fn try_in_order<T: Send, E: Send>(count: usize, job: impl Fn(usize) -> Result<T, E> + Sync) -> Result<Vec<T>, E> {
-    in_order(count, job).into_iter().collect()
+    try_in_order_with(count, || (), |(), number| job(number))
+}
+
+/// The same of jobs that have scratch memory, as [`in_order_with`] has.
+///
+/// # Errors
+/// That of the first job that has one.
+pub fn try_in_order_with<S: Send, T: Send, E: Send>(
+    count: usize,
+    make: impl Fn() -> S + Sync,
+    job: impl Fn(&mut S, usize) -> Result<T, E> + Sync,
+) -> Result<Vec<T>, E> {
+    in_order_with(count, make, job).into_iter().collect()
 }
 
 /// What the jobs numbered from 0 give, in order. Each has scratch memory that is its own
@@ -67,8 +79,22 @@ pub fn try_chunks<I: Sync, T: Send, E: Send>(
     size: usize,
     job: impl Fn(usize, &[I]) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
+    try_chunks_with(items, size, || (), |(), number, chunk| job(number, chunk))
+}
+
+/// The same with scratch memory, as [`in_order_with`] has.
+///
+/// # Errors
+/// That of the first job that has one.
+pub fn try_chunks_with<I: Sync, S: Send, T: Send, E: Send>(
+    items: &[I],
+    size: usize,
+    make: impl Fn() -> S + Sync,
+    job: impl Fn(&mut S, usize, &[I]) -> Result<T, E> + Sync,
+) -> Result<Vec<T>, E> {
     let chunk = |number: usize| &items[number * size..items.len().min((number + 1) * size)];
-    try_in_order(items.len().div_ceil(size), |number| job(number, chunk(number)))
+    let job = |scratch: &mut S, number| job(scratch, number, chunk(number));
+    try_in_order_with(items.len().div_ceil(size), make, job)
 }
 
 /// What becomes of each item, in order, or the first error.
@@ -82,12 +108,6 @@ pub fn try_taking<I: Send, T: Send, E: Send>(
     let items: Vec<Mutex<Option<I>>> = items.into_iter().map(|item| Mutex::new(Some(item))).collect();
     let taken = in_order(items.len(), |number| lock(&items[number]).take().map(&job));
     taken.into_iter().flatten().collect()
-}
-
-/// Hands each chunk of `size` items to `job` with its number; the last may be shorter.
-pub fn for_chunks<T: Send>(items: &mut [T], size: usize, job: impl Fn(usize, &mut [T]) + Sync) {
-    let chunks: Vec<Mutex<&mut [T]>> = items.chunks_mut(size).map(Mutex::new).collect();
-    for_all(chunks.len(), &|number| job(number, &mut lock(&chunks[number])));
 }
 
 /// A job that panics ends the loop: nobody looks at what it left.
@@ -123,12 +143,5 @@ mod tests {
         let make = || *made.lock().unwrap() += 1;
         in_order_with(1000, make, |(), _| ());
         assert!(*made.lock().unwrap() <= rayon::current_num_threads());
-    }
-
-    #[test]
-    fn chunks_are_each_handed_out_once() {
-        let mut numbers = vec![1; 1000];
-        for_chunks(&mut numbers, 7, |number, chunk| chunk.iter_mut().for_each(|n| *n += number));
-        assert_eq!(numbers, (0..1000).map(|n| 1 + n / 7).collect::<Vec<_>>());
     }
 }

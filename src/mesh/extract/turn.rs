@@ -32,9 +32,8 @@ impl Fans {
         run: &Run,
     ) -> Result<(), Cancelled> {
         let all = &*self;
-        let of_fans = |probe: &mut Probe<'_, S>, n: usize| {
+        let of_fans = |probe: &mut Probe<'_, S>, n: usize, fans: &[Fan]| {
             run.check()?;
-            let fans = &all.fans[n * AT_ONCE..all.fans.len().min((n + 1) * AT_ONCE)];
             let mut found = Vec::with_capacity(fans.len());
             for (low, fan) in (n * AT_ONCE..).zip(fans) {
                 let ring = all.of(low);
@@ -45,9 +44,8 @@ impl Fans {
             }
             Ok(found)
         };
-        let chunks = all.fans.len().div_ceil(AT_ONCE);
         let found: Result<Vec<Vec<Turned>>, Cancelled> =
-            jobs::in_order_with(chunks, || Probe::new(samples, sampler), of_fans).into_iter().collect();
+            jobs::try_chunks_with(&all.fans, AT_ONCE, || Probe::new(samples, sampler), of_fans);
         let fans = self.fans.len() as u32;
         for Turned { fans: [low, high], segments, at } in found?.into_iter().flatten() {
             let places = [(low, segments[0]), (high, segments[1])].map(|(fan, nth)| {

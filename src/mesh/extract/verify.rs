@@ -102,14 +102,12 @@ impl Fans {
         all: &[T],
         tell: impl Fn(&mut Probe<'_, S>, &T) -> U + Sync,
     ) -> Result<Vec<U>, Cancelled> {
-        let of_chunk = |probe: &mut Probe<'_, S>, number: usize| {
+        let of_chunk = |probe: &mut Probe<'_, S>, _, chunk: &[T]| {
             run.check()?;
-            let chunk = &all[number * FEW..all.len().min((number + 1) * FEW)];
             Ok(chunk.iter().map(|one| tell(probe, one)).collect::<Vec<U>>())
         };
-        let chunks = all.len().div_ceil(FEW);
         let found: Result<Vec<Vec<U>>, Cancelled> =
-            jobs::in_order_with(chunks, || Probe::new(samples, sampler), of_chunk).into_iter().collect();
+            jobs::try_chunks_with(all, FEW, || Probe::new(samples, sampler), of_chunk);
         Ok(found?.into_iter().flatten().collect())
     }
 
@@ -121,9 +119,8 @@ impl Fans {
         sampler: &S,
         run: &Run,
     ) -> Result<Vec<(u32, bool)>, Cancelled> {
-        let of_chunk = |probe: &mut Probe<'_, S>, chunk: usize| {
+        let of_chunk = |probe: &mut Probe<'_, S>, chunk: usize, fans: &[Fan]| {
             run.check()?;
-            let fans = &self.fans[chunk * AT_ONCE..self.fans.len().min((chunk + 1) * AT_ONCE)];
             let (mut found, mut points) = (Vec::new(), Vec::new());
             let mut number = (chunk * AT_ONCE) as u32;
             for fans in fans.chunk_by(|a, b| a.block == b.block && a.span.is_single() && b.span.is_single()) {
@@ -149,9 +146,8 @@ impl Fans {
             }
             Ok(found)
         };
-        let chunks = self.fans.len().div_ceil(AT_ONCE);
         let found: Result<Vec<Vec<(u32, bool)>>, Cancelled> =
-            jobs::in_order_with(chunks, || Probe::new(samples, sampler), of_chunk).into_iter().collect();
+            jobs::try_chunks_with(&self.fans, AT_ONCE, || Probe::new(samples, sampler), of_chunk);
         Ok(found?.into_iter().flatten().collect())
     }
 

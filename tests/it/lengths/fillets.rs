@@ -1,6 +1,7 @@
 //! Laws of filleted unions, in the plane and in space: what a rolling ball adds, and no more.
 
 use std::f64::consts::PI;
+use std::fmt::Display;
 
 use glam::{DVec2, DVec3};
 use rvachev::program::Region;
@@ -35,13 +36,18 @@ fn is_between(a: &Profile, b: &Profile, radius: f64, random: &mut Random) -> Out
     let points = points_in_plane(random, &plain.bounds()?, 400);
     let (plain, filleted, closing) =
         (plain.contains_all(&points)?, filleted.contains_all(&points)?, closed.values(&points)?);
+    are_between(&points, [&plain, &filleted], &closing, radius, &format!("{a:?}, {b:?}"));
+    Ok(())
+}
+
+/// Fails unless what is filleted holds what is plain, and is held by the closing.
+fn are_between<P: Display>(points: &[P], [plain, filleted]: [&[bool]; 2], closing: &[f64], radius: f64, told: &str) {
     for (i, p) in points.iter().enumerate() {
-        assert!(filleted[i] || !plain[i], "{a:?}, {b:?}, {radius}: {p} is lost");
+        assert!(filleted[i] || !plain[i], "{told}, {radius}: {p} is lost");
         // Values beside the level are distances.
         let held = closing[i] > -3.0 * TOLERANCE * radius;
-        assert!(held || !filleted[i], "{a:?}, {b:?}, {radius}: {p} is added beyond the closing");
+        assert!(held || !filleted[i], "{told}, {radius}: {p} is added beyond the closing");
     }
-    Ok(())
 }
 
 #[test]
@@ -119,11 +125,7 @@ fn filleted_unions_of_solids_hold_their_operands() -> Outcome {
     let points: Vec<DVec3> = (0..300).map(|_| random.point_in(&bounds)).collect();
     let (plain, filleted, closing) =
         (plain.contains_all(&points)?, filleted.contains_all(&points)?, closed.values(&points)?);
-    for (i, p) in points.iter().enumerate() {
-        assert!(filleted[i] || !plain[i], "{a:?}, {b:?}, {radius}: {p} is lost");
-        let held = closing[i] > -3.0 * TOLERANCE * radius;
-        assert!(held || !filleted[i], "{a:?}, {b:?}, {radius}: {p} is added beyond the closing");
-    }
+    are_between(&points, [&plain, &filleted], &closing, radius, &format!("{a:?}, {b:?}"));
     Ok(())
 }
 

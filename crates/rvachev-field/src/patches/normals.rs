@@ -70,8 +70,8 @@ impl Patches {
         (count > 0).then(|| [0, 1, 2].map(|axis| Interval::new(least[axis], most[axis])))
     }
 
-    /// Whether a patch is farther from a point of the surface's frame than this, as far as its box and
-    /// its plane tell.
+    /// Whether a patch is farther from a point of the surface's frame than this, as far as its box
+    /// and its plane tell.
     fn is_far(&self, at: usize, local: DVec3, reach: f64) -> bool {
         let Some((face, sides)) = self.at(at) else { return false };
         let [a, e, f] = [face.a, sides.e, sides.f].map(double);
