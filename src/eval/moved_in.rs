@@ -46,26 +46,59 @@ pub(super) fn narrowed(bounds: Bounds, program: &Program) -> Option<Part> {
     match program.narrow(&bounds) {
         Region::Outside => None,
         Region::Inside => Some(Part { bounds, program: program.clone(), is_inside: true }),
-        Region::Surface(program) if is_outside(&bounds, &program) => None,
-        Region::Surface(program) => Some(Part { bounds, program, is_inside: false }),
+        Region::Surface(program) => {
+            let bounds = clipped(&bounds, &program);
+            (!bounds.is_empty()).then_some(Part { bounds, program, is_inside: false })
+        }
     }
 }
 
-/// Whether the value in the middle and the slopes of the whole show that nothing of a box is
-/// inside: behind deformations that tells more than the ranges of the leaves.
-fn is_outside(bounds: &Bounds, program: &Program) -> bool {
+/// The part of a box beyond which the value in the middle and the slopes of the whole show that
+/// nothing is inside: behind deformations that tells more than the ranges of the leaves.
+///
+/// ```text
+///     f(x) ≤ f(c) + Σ max sᵢ (xᵢ − cᵢ)    of slopes s within the box, about its middle c
+/// ```
+fn clipped(bounds: &Bounds, program: &Program) -> Bounds {
     /// More than rounding, in proportion.
     const MARGIN: f64 = 1e-12;
     let is_smooth = |node: &Node| node.valued_by().is_none_or(|leaf| program.instance(leaf).field.is_formula());
     if program.frames.is_empty() || !bounds.is_finite() || program.jumps() || !program.nodes.iter().all(is_smooth) {
-        return false;
+        return *bounds;
     }
     let hull = [0, 1, 2].map(|axis| Interval::new(bounds.min[axis], bounds.max[axis]));
     let slopes = program.evaluate(Dual::point(hull), &mut Vec::new()).gradient();
-    let half = 0.5 * bounds.size();
-    let rise: f64 = (0..3).map(|axis| slopes[axis].magnitude() * half[axis]).sum();
+    let (middle, half) = (bounds.center(), 0.5 * bounds.size());
+    let rises = DVec3::from_array([0, 1, 2].map(|axis| slopes[axis].magnitude() * half[axis]));
+    let rise = rises.element_sum();
     let size = bounds.min.abs().max(bounds.max.abs()).max_element();
-    program.value(bounds.center()) + rise * (1.0 + MARGIN) + MARGIN * size < 0.0
+    let most = program.value(middle) + MARGIN * (rise + size);
+    if most + rise < 0.0 {
+        return Bounds::EMPTY;
+    }
+    let mut left = *bounds;
+    for axis in 0..3 {
+        let beside = most + (rise - rises[axis]);
+        let [up, down] = [slopes[axis], -slopes[axis]].map(|slope| reach(beside, slope) + MARGIN * size);
+        if up < half[axis] {
+            left.max[axis] = middle[axis] + up;
+        }
+        if down < half[axis] {
+            left.min[axis] = middle[axis] - down;
+        }
+    }
+    left
+}
+
+/// The largest t up to which a value of `most` at 0 may be positive, at these slopes.
+fn reach(most: f64, slope: Interval) -> f64 {
+    if slope.hi() >= 0.0 {
+        f64::INFINITY
+    } else if most >= 0.0 {
+        most / -slope.hi()
+    } else {
+        most / -slope.lo()
+    }
 }
 
 /// Whether the box of a solid that its parts tell may be too large: where it is deformed, or edges

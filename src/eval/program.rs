@@ -220,18 +220,8 @@ impl Program {
         self.nodes.iter().filter_map(Node::valued_by).all(|leaf| self.instance(leaf).field.cost() > 1)
     }
 
-    /// Whether any of its leaves goes on in another one.
-    pub(crate) fn jumps(&self) -> bool {
-        self.nodes.iter().filter_map(Node::valued_by).any(|leaf| self.leaf_jumps(leaf))
-    }
-
-    pub(super) fn leaf_jumps(&self, leaf: u32) -> bool {
-        let instance = self.instance(leaf);
-        instance.frame != 0 || instance.field.jumps()
-    }
-
     /// Whether any of its leaves goes on in another one, or is seen through what may tear it.
-    pub(crate) fn tears(&self) -> bool {
+    pub(crate) fn jumps(&self) -> bool {
         let is_torn = |mut frame: u32| {
             while let Some(own) = self.scene.frame(frame) {
                 if !own.warp.is_continuous() {

@@ -89,7 +89,7 @@ struct Bracket {
 /// What a cell, which the surface of the program may cross, has of the solid.
 pub(super) fn held(program: &Program, cell: &Bounds) -> Held {
     let whole = cell.size().element_product();
-    let is_smooth = program.is_steady() && !program.tears();
+    let is_smooth = program.is_steady() && !program.jumps();
     let first = by_concavity(program, cell).or_else(|| is_smooth.then(|| by_slopes(program, cell).held(cell)));
     let less = |best: Option<Held>, other: Held| best.filter(|best| best.open() <= other.open()).unwrap_or(other);
     let leaves = |best: Option<Held>, part: f64| best.is_none_or(|best| best.open() >= part * whole);
@@ -108,7 +108,7 @@ pub(super) fn held(program: &Program, cell: &Bounds) -> Held {
 /// By slopes, a plane about the middle of a cell, and the volume between what it says is inside and
 /// what is; nothing of what need not change as its slopes say.
 pub(super) fn by_plane(program: &Program, cell: &Bounds) -> Option<(Plane, f64)> {
-    if !program.is_steady() || program.tears() {
+    if !program.is_steady() || program.jumps() {
         return None;
     }
     let bracket = by_slopes(program, cell);

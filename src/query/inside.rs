@@ -31,7 +31,7 @@ pub(super) fn is_inside(programs: &Compiled, p: DVec3) -> bool {
 pub(super) fn joint(programs: &Compiled, origin: DVec3) -> f64 {
     // Values of 0 at jumps say nothing of faces.
     let program = &programs.surface;
-    if program.value(origin) > 0.0 || program.tears() || !is_inside(programs, origin) {
+    if program.value(origin) > 0.0 || program.jumps() || !is_inside(programs, origin) {
         return 0.0;
     }
     let size = if programs.bounds.is_finite() { programs.bounds.longest_side() } else { 1.0 };

@@ -56,9 +56,9 @@ fn maps() -> Vec<Map> {
         ("rotate", [1.01, 1.4], |s| s.rotate(DQuat::from_axis_angle(DVec3::new(0.36, 0.48, 0.8), 0.9))),
         ("scale_axes", [1.005, 1.01], |s| s.scale_axes([1.3, 0.8, 0.6])),
         ("mirrored", [1.01, 1.06], |s| s.translate([1.5, 0.1, 0.0]).mirrored([0.8, 0.6, 0.0], 0.1)),
-        ("twist", [1.04, 1.08], |s| s.twist(rad(0.7))),
-        ("twist aside", [1.02, 1.2], |s| s.translate([0.8, 0.1, 0.2]).twist(rad(-0.9))),
-        ("twist_by", [1.03, 1.2], |s| {
+        ("twist", [1.008, 1.08], |s| s.twist(rad(0.7))),
+        ("twist aside", [1.01, 1.2], |s| s.translate([0.8, 0.1, 0.2]).twist(rad(-0.9))),
+        ("twist_by", [1.015, 1.2], |s| {
             s.twist_by(rad(1.0), SineWave { mean: 0.2, amplitude: 0.5, wavelength: 2.0, phase: rad(0.3) })
         }),
         ("taper", [1.06, 1.2], |s| s.taper(0.4, -0.3, 2.0)),
@@ -68,8 +68,8 @@ fn maps() -> Vec<Map> {
                 SineWave { mean: 1.0, amplitude: 0.3, wavelength: 1.5, phase: rad(0.3) },
             )
         }),
-        ("bend", [1.02, 1.8], |s| s.bend(0.5, rad(0.6))),
-        ("bend aside", [1.02, 1.35], |s| s.rotate_y(rad(0.5)).bend(-0.4, rad(0.2))),
+        ("bend", [1.01, 1.8], |s| s.bend(0.5, rad(0.6))),
+        ("bend aside", [1.015, 1.35], |s| s.rotate_y(rad(0.5)).bend(-0.4, rad(0.2))),
         ("elongate", [1.005, 1.01], |s| s.elongate([0.5, 0.0, 0.8])),
         ("elongate, rotated", [1.02, 1.4], |s| s.elongate([0.5, 0.0, 0.8]).rotate_x(rad(0.6)).rotate_z(rad(0.4))),
         ("repeat", [1.01, 1.01], |s| s.repeat([3, 2, 1], [2.5, 2.2, 1.0])),
@@ -77,8 +77,8 @@ fn maps() -> Vec<Map> {
             s.repeat([2, 2, 2], [2.5, 2.2, 2.4]).rotate_x(rad(0.6)).rotate_z(rad(0.4))
         }),
         ("repeat_polar", [1.01, 1.08], |s| s.rotate_z(rad(0.4)).translate([2.0, 0.3, 0.0]).repeat_polar(7)),
-        ("twist, rotated", [1.03, 1.65], |s| s.twist(rad(0.7)).rotate_x(rad(0.6)).rotate_z(rad(0.4))),
-        ("twist, bend", [1.05, 1.7], |s| s.twist(rad(0.7)).rotate_y(rad(0.3)).bend(0.3, rad(0.4))),
+        ("twist, rotated", [1.015, 1.65], |s| s.twist(rad(0.7)).rotate_x(rad(0.6)).rotate_z(rad(0.4))),
+        ("twist, bend", [1.04, 1.7], |s| s.twist(rad(0.7)).rotate_y(rad(0.3)).bend(0.3, rad(0.4))),
         ("taper, twist, difference", [1.25, 1.55], |s| s.taper(0.3, 0.3, 2.0).twist(rad(0.5)) - s.scale(0.5)),
     ]
 }

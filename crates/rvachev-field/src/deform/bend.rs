@@ -51,6 +51,9 @@ impl Bend {
 impl Warp for Bend {
     const NAME: &'static str = "bend";
 
+    /// Slopes have no bounds where it is cut.
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         let k = self.curvature;

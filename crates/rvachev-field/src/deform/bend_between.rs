@@ -117,6 +117,9 @@ impl BendBetween {
 impl Warp for BendBetween {
     const NAME: &'static str = "bend_between";
 
+    /// Slopes have no bounds where it is cut.
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         if self.curvature() < Self::FLAT {

@@ -67,6 +67,8 @@ impl fmt::Debug for BuiltInLaw {
 }
 
 impl Law for BuiltInLaw {
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn at<R: Real>(&self, z: R) -> R {
         match self {

@@ -44,6 +44,10 @@ use crate::{COORDINATE_LIMIT, ParamError, check};
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
 pub trait Law: Debug + Clone + Send + Sync + 'static {
+    /// Whether its values are known to change as its derivatives say, without jumps: what is
+    /// deformed by it then has tighter bounds. The laws that are ready made do not jump.
+    const CONTINUOUS: bool = false;
+
     /// The value at height z.
     fn at<R: Real>(&self, z: R) -> R;
 
@@ -58,6 +62,8 @@ pub trait Law: Debug + Clone + Send + Sync + 'static {
 
 /// The constant law.
 impl Law for f64 {
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn at<R: Real>(&self, z: R) -> R {
         z.lift(*self)
@@ -89,6 +95,8 @@ pub struct LinearLaw {
 }
 
 impl Law for LinearLaw {
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn at<R: Real>(&self, z: R) -> R {
         z.scale_add(self.slope, z.lift(self.at_zero))
@@ -122,6 +130,8 @@ pub struct SmoothStep {
 }
 
 impl Law for SmoothStep {
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn at<R: Real>(&self, z: R) -> R {
         let ((z0, v0), (z1, v1)) = (self.from, self.to);
@@ -173,6 +183,8 @@ pub struct SineWave {
 }
 
 impl Law for SineWave {
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn at<R: Real>(&self, z: R) -> R {
         let angle = z.scale_add(std::f64::consts::TAU / self.wavelength, z.lift(self.phase.radians()));
@@ -231,6 +243,8 @@ impl LawTable {
 }
 
 impl Law for LawTable {
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn at<R: Real>(&self, z: R) -> R {
         // Each piece adds its rise, from −½ of it before the piece to +½ after.

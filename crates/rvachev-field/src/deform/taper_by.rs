@@ -32,6 +32,8 @@ fn held<R: Real>(factor: R) -> R {
 impl<X: Law, Y: Law> Warp for TaperBy<X, Y> {
     const NAME: &'static str = "taper_by";
 
+    const CONTINUOUS: bool = X::CONTINUOUS && Y::CONTINUOUS;
+
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         [x / held(self.x.at(z)), y / held(self.y.at(z)), z]

@@ -45,6 +45,8 @@ impl<L: Law> TwistBy<L> {
 impl<L: Law> Warp for TwistBy<L> {
     const NAME: &'static str = "twist_by";
 
+    const CONTINUOUS: bool = L::CONTINUOUS;
+
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         let (sin, cos) = self.turn(z).sin_cos();
