@@ -93,14 +93,15 @@ impl Spot {
         self.is_solid() == other.is_solid() && self.is_ground() == other.is_ground()
     }
 
-    /// Whether an edge of the solid may pass between two neighbours; a pixel spans `pixel`.
+    /// Whether an edge of the solid may pass between two neighbours; `pixel` tells how
+    /// wide a pixel is at a distance.
     #[inline]
-    pub(super) fn differs(&self, other: &Spot, pixel: f64) -> bool {
+    pub(super) fn differs(&self, other: &Spot, pixel: impl Fn(f64) -> f64) -> bool {
         match (self.is_solid(), other.is_solid()) {
             (true, true) => {
                 self.owner != other.owner
                     || self.normal.dot(other.normal) < SAME_NORMAL
-                    || self.steps(other) > STEP * pixel
+                    || self.steps(other) > STEP * pixel(self.distance.min(other.distance))
             }
             (solid, other) => solid != other,
         }
