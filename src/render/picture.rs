@@ -35,6 +35,10 @@ const BAND: u32 = 1 << 19;
 /// Rows that a thread makes at a time where nothing hides light: as many as a tile of a draft has.
 const PLAIN_ROWS: u32 = Tile::SIDE;
 
+/// Rays of a pixel that meet what one of so many before them has met, about as it is turned, have
+/// its light where nothing is hidden.
+const KNOWN: usize = 3;
+
 /// Shares of the key light that differ by more show the edge of a hard shadow.
 const SHADOW_EDGE: f32 = 0.3;
 
@@ -93,11 +97,6 @@ pub(super) struct Fine {
     pub(super) spots: Vec<Spot>,
 }
 
-/// The mean of the light along the rays of a pixel.
-fn mean(light: &[Vec4], number: u32, count: usize) -> Vec4 {
-    light[number as usize * count..][..count].iter().copied().sum::<Vec4>() / count as f32
-}
-
 impl Picture<'_> {
     /// All pixels, row by row from the top, as what `finish` makes of them: linear light, weighted
     /// by alpha.
@@ -148,7 +147,7 @@ impl Picture<'_> {
         finish: &(impl Fn([f32; 4]) -> P + Sync),
         pixels: &mut [P],
     ) -> Result<(), Cancelled> {
-        let RenderSettings { width, height, samples, .. } = *self.settings;
+        let RenderSettings { width, height, .. } = *self.settings;
         let part = |row: u32| f64::from(row) / f64::from(height);
         let run = &run.stage(part(top), part(end));
         let Some(obstacles) = &self.obstacles else { return self.plain((top, end), run, finish, pixels) };
@@ -173,7 +172,6 @@ impl Picture<'_> {
         to_divide.report(1.0);
         let light = self.fine_light(&band, &fine, &to_match)?;
         to_match.report(1.0);
-        let n2 = (samples * samples) as usize;
         let meter = Meter::new(&to_shade, end - top);
         (top..end).into_par_iter().zip(pixels.par_chunks_mut(width as usize)).try_for_each(|(y, row)| {
             meter.check()?;
@@ -182,7 +180,7 @@ impl Picture<'_> {
                 let at = band.place(x, y);
                 let light = match fine.numbers[at] {
                     u32::MAX => self.shade(&band.spots[at], band.open(at), || behind),
-                    number => mean(&light, number, n2),
+                    number => light[number as usize],
                 };
                 *pixel = finish(light.to_array());
             }
@@ -208,7 +206,7 @@ impl Picture<'_> {
         pixels: &mut [P],
     ) -> Result<(), Cancelled> {
         let RenderSettings { width, height, samples, style, .. } = *self.settings;
-        let (columns, n2) = (width as usize, (samples * samples) as usize);
+        let columns = width as usize;
         let halo = u32::from(samples > 1 || style == Style::Technical) + self.reach();
         let (first, last) = (top.saturating_sub(halo), (end + halo).min(height));
         let window = Window { top: first, height: last - first, ..Window::whole(width, height) };
@@ -248,7 +246,7 @@ impl Picture<'_> {
                         u32::MAX if spot.is_solid() => finish(self.solid(spot, Visibility::FULL).to_array()),
                         u32::MAX => empty,
                         number => {
-                            let light = mean(&light, number, n2);
+                            let light = light[number as usize];
                             finish(lines.as_ref().map_or(light, |lines| lines.drawn(light, at)).to_array())
                         }
                     };
@@ -340,7 +338,7 @@ impl Picture<'_> {
         Ok(Fine { numbers, spots })
     }
 
-    /// The light along each fine ray.
+    /// The mean of the light along the fine rays of each pixel.
     fn fine_light(&self, band: &Band, fine: &Fine, run: &Run) -> Result<Vec<Vec4>, Cancelled> {
         let n = self.settings.samples;
         let n2 = (n * n) as usize;
@@ -366,13 +364,23 @@ impl Picture<'_> {
             }
         };
         let open = |k: usize| open.get(k).copied().unwrap_or(Visibility::FULL);
-        let row = |place: usize| f64::from(band.top + place as u32 / band.width);
-        let shade = |(k, spot): (usize, &Spot)| {
-            let down = (k % n2) as u32 / n;
-            let y = row(places[k / n2]) + (f64::from(down) + 0.5) / f64::from(n);
-            self.shade(spot, open(k), || self.behind(y))
-        };
-        Ok(jobs::in_order(fine.spots.len(), |k| shade((k, &fine.spots[k]))))
+        let shares_light = self.obstacles.is_none();
+        Ok(jobs::in_order(places.len(), |number| {
+            let top = f64::from(band.top + places[number] as u32 / band.width);
+            let (mut sum, mut known) = (Vec4::ZERO, [(&Spot::NOTHING, Vec4::ZERO); KNOWN]);
+            for (k, spot) in fine.spots[number * n2..][..n2].iter().enumerate() {
+                let found = known.iter().find(|(other, _)| shares_light && spot.looks_like(other));
+                let light = found.map(|(_, light)| *light).unwrap_or_else(|| {
+                    let down = (f64::from(k as u32 / n) + 0.5) / f64::from(n);
+                    let light = self.shade(spot, open(number * n2 + k), || self.behind(top + down));
+                    known.rotate_right(1);
+                    known[0] = (spot, light);
+                    light
+                });
+                sum += light;
+            }
+            sum / n2 as f32
+        }))
     }
 
     /// The visibility of a spot, from the pixel at `place` and those about it; none if none of

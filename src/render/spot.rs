@@ -10,6 +10,9 @@ const GROUND: u32 = u32::MAX - 1;
 /// Neighbours whose normals are further apart (cosine of 14°) show an edge.
 const SAME_NORMAL: f32 = 0.97;
 
+/// Those whose normals are closer (cosine of half a degree) have one light.
+const SAME_LIGHT: f32 = 0.999_96;
+
 /// Neighbours that are further from the other's tangent plane, in pixels, are a step.
 const STEP: f64 = 1.5;
 
@@ -91,6 +94,15 @@ impl Spot {
     #[inline]
     pub(super) fn same_piece(&self, other: &Spot) -> bool {
         self.is_solid() == other.is_solid() && self.is_ground() == other.is_ground()
+    }
+
+    /// Whether two of the solid in one pixel have about the same light.
+    #[inline]
+    pub(super) fn looks_like(&self, other: &Spot) -> bool {
+        self.is_solid()
+            && self.owner == other.owner
+            && self.is_front == other.is_front
+            && self.normal.dot(other.normal) > SAME_LIGHT
     }
 
     /// Whether an edge of the solid may pass between two neighbours; `pixel` tells how
