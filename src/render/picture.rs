@@ -251,8 +251,8 @@ impl Picture<'_> {
                         }
                     };
                 }
+                meter.add(1);
             }
-            meter.add(u64::from(end - top));
             Ok::<_, Cancelled>(())
         })?;
         run.report(1.0);
