@@ -5,7 +5,7 @@ use rvachev::Solid;
 macro_rules! examples {
     ($($name:ident $path:literal)*) => {
         $(
-            #[allow(dead_code, reason = "of an example only what it shows is asked for")]
+            #[allow(dead_code, clippy::duplicate_mod, reason = "of an example only what it shows is asked for")]
             #[path = $path]
             mod $name;
         )*
