@@ -21,9 +21,8 @@
 
 #[path = "lengths/accuracy.rs"]
 mod accuracy;
-#[expect(dead_code, reason = "memory alone is measured with it")]
-#[path = "mesh/measure.rs"]
-mod measure;
+#[path = "mesh/memory.rs"]
+mod memory;
 #[path = "lengths/race.rs"]
 mod race;
 #[path = "../tests/it/lengths/reference.rs"]
@@ -36,6 +35,7 @@ use std::time::{Duration, Instant};
 
 use rvachev::{Camera, CancelToken, CellSize, MeshSettings, RenderSettings, Run, Scene, Solid, ThinFeatures};
 
+use memory::MEMORY;
 use race::{Budget, Job, Took, race, timed};
 use solids::Row;
 
@@ -180,7 +180,7 @@ const PINS: &str = "pins";
 fn print_memory() {
     const MOST: f64 = 400.0;
     for count in ["100", "1000"] {
-        let megabytes = measure::memory_apart([PINS, count, "", ""]);
+        let megabytes = memory::memory_apart([PINS, count, "", ""]);
         println!("{count} pins at once, mesh: {megabytes:.0} MB; allowed {MOST:.0}: {}", verdict(megabytes < MOST));
     }
 }
@@ -213,9 +213,9 @@ fn print_cancel() {
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
-    if let [measure::MEMORY, PINS, count, ..] = words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+    if let [MEMORY, PINS, count, ..] = words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         let solid = solids::at_once(count.parse().expect("a number"), Some(solids::fillet(0.05)));
-        return measure::print_memory(1, || solid.mesh_with(&settings(), &one_thread()));
+        return memory::print_memory(1, || solid.mesh_with(&settings(), &one_thread()));
     }
     let chosen = Chosen(words);
     let rows: Vec<Row> = solids::rows().into_iter().filter(|row| chosen.names(row.name)).collect();

@@ -26,6 +26,8 @@ mod chains;
 mod lean;
 #[path = "mesh/measure.rs"]
 mod measure;
+#[path = "mesh/memory.rs"]
+mod memory;
 #[path = "../tests/it/models.rs"]
 mod models;
 #[path = "mesh/peer.rs"]
@@ -39,7 +41,8 @@ mod volume;
 
 use rvachev::{CellSize, Features, Mesh, MeshSettings, Run};
 
-use measure::{Cost, MEMORY, in_turn, measured, memory_apart, print_memory};
+use measure::{Cost, in_turn, measured};
+use memory::{MEMORY, memory_apart, print_memory};
 use models::Model;
 
 /// What the words on the command line choose.

@@ -16,16 +16,27 @@
 //! draw, and of every entry of the catalogue, beside fidget's VM on the same formula seen the same
 //! way, where there is one.
 //!
-//! Words after `--` choose: `normals`, `shaded`, `prospero`, `many`, `rows`, `catalogue`, names of
-//! models, `512`, `1024`, `two` (threads), `quick` (fewer rounds), `ours` (without fidget), `vm`
+//! Drafts are of what the examples show. The last rows are of thousands of balls cut out, with the
+//! memory that they take.
+//!
+//! Words after `--` choose: `normals`, `shaded`, `prospero`, `many`, `rows`, `catalogue`, `drafts`,
+//! `memory`, names of models, `512`, `1024`, `two` (threads), `quick` (fewer rounds), `ours` (without fidget), `vm`
 //! (without its JIT), and after `=` a part of the names of rows.
 
+#[path = "render/cut_out.rs"]
+mod cut_out;
+#[path = "render/drafts.rs"]
+mod drafts;
 #[path = "evaluate/lean.rs"]
 mod lean;
+#[path = "mesh/memory.rs"]
+mod memory;
 #[path = "../tests/it/models.rs"]
 mod models;
 #[path = "render/rows.rs"]
 mod rows;
+#[path = "../tests/it/workpieces.rs"]
+mod workpieces;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -42,6 +53,7 @@ use rvachev::camera::{Projection, Window};
 use rvachev::{Camera, PlaneBounds, Profile, RFunction, RenderSettings, Run, Scene, Solid, layers::GBuffer};
 
 use lean::lean;
+use memory::{MEMORY, print_memory};
 use models::Model;
 
 /// What is asked for on the command line.
@@ -57,6 +69,12 @@ impl Choice {
         self.has(word) || !among.iter().any(|other| self.has(other))
     }
 
+    /// Whether rows of this name are wanted: all are if none is named.
+    fn names(&self, name: &str) -> bool {
+        let mut parts = self.0.iter().filter_map(|word| word.strip_prefix('=')).peekable();
+        parts.peek().is_none() || parts.any(|part| name.contains(part))
+    }
+
     fn sizes(&self) -> Vec<u32> {
         [512, 1024].into_iter().filter(|size| self.wants(&size.to_string(), &["512", "1024"])).collect()
     }
@@ -70,11 +88,17 @@ impl Choice {
     }
 }
 
-const PARTS: [&str; 6] = ["normals", "shaded", "prospero", "many", "rows", "catalogue"];
+const PARTS: [&str; 8] = ["normals", "shaded", "prospero", "many", "rows", "catalogue", "drafts", "memory"];
 const NAMES: [&str; 6] = ["M1", "M2", "M3", "M4", "M5", "M6"];
 
 fn main() {
     let choice = Choice(std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect());
+    if let [MEMORY, cut_out::CUT_OUT, rule, count, threads] =
+        choice.0.iter().map(String::as_str).collect::<Vec<_>>()[..]
+    {
+        let [count, threads] = [count, threads].map(|number| number.parse().expect("a number"));
+        return print_memory(threads, cut_out::job(rule, count));
+    }
     if choice.wants("normals", &PARTS) {
         normals(&choice);
     }
@@ -92,6 +116,12 @@ fn main() {
     }
     if choice.wants("catalogue", &PARTS) {
         print_rows(&choice, rows::catalogued());
+    }
+    if choice.wants("drafts", &PARTS) {
+        drafts::rows(|name| choice.names(name), choice.rounds());
+    }
+    if choice.wants("memory", &PARTS) {
+        cut_out::rows();
     }
 }
 
@@ -375,9 +405,8 @@ fn print_rows(choice: &Choice, rows: Vec<rows::Row>) {
     println!("normal images of single solids, one thread, milliseconds; ratio of fidget's VM to our first\n");
     println!("{:28} size    first     next   hits  fidget VM   ratio", "solid");
     let run = Run { threads: 1, ..Run::default() };
-    let parts: Vec<&str> = choice.0.iter().filter_map(|word| word.strip_prefix('=')).collect();
     for rows::Row { name, size, solid, has_peer } in rows {
-        if !(parts.is_empty() || parts.iter().any(|part| name.contains(part))) {
+        if !choice.names(&name) {
             continue;
         }
         let camera = Camera::framing_orthographic(&solid.bounds().expect("the solid is valid"));

@@ -53,7 +53,7 @@ fn rod(radius: f64, low: f64, high: f64) -> Solid {
     Solid::cylinder(radius, high - low).translate(DVec3::Z * (0.5 * (low + high)))
 }
 
-fn bolt() -> Solid {
+pub(crate) fn bolt() -> Solid {
     let head = hexagon(FLATS, HEAD) & cone(0.0, 1.0 / 30f64.to_radians().tan(), 0.475 * FLATS, HEAD);
     let collar = rod(0.46 * FLATS, -0.6, 0.1);
     let socket = hexagon(7.0, 4.0).translate(DVec3::Z * (HEAD - 3.2));

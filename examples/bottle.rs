@@ -50,13 +50,13 @@ fn shape() -> Solid {
 }
 
 /// The bottle's wall, opened at the top.
-fn wall() -> Solid {
+pub(crate) fn wall() -> Solid {
     let mouth = Solid::cylinder(NECK - WALL, 20.0).translate([0.0, 0.0, TOP]).named("mouth");
     shape().shell(WALL) - mouth
 }
 
 /// Two turns of a thread, and the ring below it.
-fn thread() -> Solid {
+pub(crate) fn thread() -> Solid {
     let ridge = Profile::polygon([[-0.8, -1.3], [1.4, -0.5], [1.4, 0.5], [-0.8, 1.3]]);
     let helix = ridge.sweep_helix(&Helix::new(NECK, 4.0, 2.0)).translate([0.0, 0.0, TOP - 8.0]).named("thread");
     let ring = Solid::torus(NECK, 1.6).translate([0.0, 0.0, TOP - 17.0]).named("ring");

@@ -43,7 +43,7 @@ fn hole() -> Solid {
 }
 
 /// The bracket with sharp edges. The lower outer edge of the wall is at x = 0 and z = 0.
-fn sharp() -> Solid {
+pub(crate) fn sharp() -> Solid {
     let plate = Solid::cuboid(PLATE).translate([0.5 * PLATE[0], 0.0, 0.5 * PLATE[2]]).named("plate");
     let wall = Solid::cuboid(WALL).translate([0.5 * WALL[0], 0.0, 0.5 * WALL[2]]).named("wall");
     let rib = Solid::wedge(RIB).translate([WALL[0] + 0.5 * RIB[0], 0.0, PLATE[2] + 0.5 * RIB[2]]).named("rib");
@@ -53,7 +53,7 @@ fn sharp() -> Solid {
     (plate | wall | rib).difference_all(holes, RFunction::MIN_MAX)
 }
 
-fn bracket() -> Solid {
+pub(crate) fn bracket() -> Solid {
     sharp().filleted(INNER).rounded(OUTER)
 }
 

@@ -62,11 +62,11 @@ fn pedestal(radius: f64, height: f64) -> Profile {
     foot(radius) | (stem & below) | collar
 }
 
-fn pawn() -> Solid {
+pub(crate) fn pawn() -> Solid {
     (pedestal(14.0, 30.0) | bulge(8.2, 8.2, 36.5)).revolve()
 }
 
-fn rook() -> Solid {
+pub(crate) fn rook() -> Solid {
     let cup = waist(13.0, 10.2, 36.0, 53.0) | disc(11.8, 45.0, 53.0);
     let well = Profile::rectangle([16.6, 12.0]).translate([0.0, 54.0]);
     let tower = ((pedestal(16.0, 38.0) | cup) - well).revolve();
@@ -74,7 +74,7 @@ fn rook() -> Solid {
     tower - gap.repeat_polar(6)
 }
 
-fn bishop() -> Solid {
+pub(crate) fn bishop() -> Solid {
     // The arc of a circle beyond the axis makes a pointed arch.
     let mitre = Profile::circle(14.5).translate([-5.5, 58.0]);
     let turned = pedestal(16.0, 48.0) | mitre | bulge(2.7, 2.7, 73.0);
@@ -82,7 +82,7 @@ fn bishop() -> Solid {
     turned.revolve() - cut
 }
 
-fn queen() -> Solid {
+pub(crate) fn queen() -> Solid {
     let crown = waist(13.0, 7.2, 40.0, 74.0) & Profile::rectangle([60.0, 17.0]).translate([0.0, 63.5]);
     let well = Profile::superellipse([9.6, 5.0], 1.0).translate([0.0, 73.0]);
     let turned = (pedestal(18.0, 56.0) | crown) - well;
@@ -91,7 +91,7 @@ fn queen() -> Solid {
     (turned.revolve() - scallop.repeat_polar(9)) | dome
 }
 
-fn king() -> Solid {
+pub(crate) fn king() -> Solid {
     let crown = waist(12.0, 7.6, 46.0, 82.0) & Profile::rectangle([60.0, 18.0]).translate([0.0, 70.0]);
     let lid = disc(10.6, 78.0, 80.6) | bulge(8.6, 5.4, 80.0);
     let turned = pedestal(19.0, 62.0) | crown | lid;
@@ -112,7 +112,7 @@ fn rounded(mut contour: Vec<DVec2>) -> Vec<DVec2> {
     contour
 }
 
-fn knight() -> Solid {
+pub(crate) fn knight() -> Solid {
     // From the chest up the throat, round jaw and muzzle, over the forehead and the ear, and
     // down the mane.
     let contour = [
@@ -165,7 +165,7 @@ fn knight() -> Solid {
 }
 
 /// A row of six squares, every second one sunk a little.
-fn board() -> Solid {
+pub(crate) fn board() -> Solid {
     let plank = Solid::rounded_cuboid([6.0 * SQUARE + 12.0, SQUARE + 12.0, 8.0], 2.0).translate([0.0, 0.0, -4.0]);
     let sunk = Solid::cuboid([SQUARE, SQUARE, 2.0]).translate([-1.5 * SQUARE, 0.0, 0.0]);
     plank - sunk.repeat_linear(3, [2.0 * SQUARE, 0.0, 0.0])

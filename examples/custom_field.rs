@@ -164,24 +164,28 @@ fn pruning(title: &str, solid: &Solid) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+const KNOT: TorusKnot = TorusKnot { major: 10.0, minor: 3.2, tube: 1.5, turns: 3 };
+
+/// The knot joined by R-functions, and under maps: a dish with a ring of pearls carries it.
+pub(crate) fn dish() -> Solid {
+    let pearls = Solid::sphere(1.0).translate(DVec3::new(15.5, 0.0, -4.6)).repeat_polar(36);
+    let plate = Solid::superellipsoid(DVec3::new(16.5, 16.5, 1.6), 0.4, 1.0).translate(DVec3::Z * -6.0);
+    (Solid::new(KNOT) | plate) | pearls
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     println!("A trefoil knot as a leaf of one's own, joined and mapped like any other.");
-    let knot = TorusKnot { major: 10.0, minor: 3.2, tube: 1.5, turns: 3 };
 
     // A parameter that is wrong is named, like those of built-in leaves.
-    let wrong = Solid::new(TorusKnot { major: 4.0, ..knot.clone() }) | Solid::sphere(1.0);
+    let wrong = Solid::new(TorusKnot { major: 4.0, ..KNOT }) | Solid::sphere(1.0);
     if let Err(error) = wrong.bounds() {
         println!("  {error}");
     }
 
-    pruning("by the formula alone", &Solid::new(Plain(knot.clone())))?;
-    let knot = Solid::new(knot);
-    pruning("with its own range", &knot)?;
+    pruning("by the formula alone", &Solid::new(Plain(KNOT)))?;
+    pruning("with its own range", &Solid::new(KNOT))?;
 
-    // Joined by R-functions, and under maps: a dish with a ring of pearls carries the knot.
-    let pearls = Solid::sphere(1.0).translate(DVec3::new(15.5, 0.0, -4.6)).repeat_polar(36);
-    let plate = Solid::superellipsoid(DVec3::new(16.5, 16.5, 1.6), 0.4, 1.0).translate(DVec3::Z * -6.0);
-    let ornament = (knot | plate) | pearls;
+    let ornament = dish();
     pruning("knot, dish and 36 pearls", &ornament)?;
 
     std::fs::create_dir_all("out")?;

@@ -64,7 +64,7 @@ fn contact(low: f64, high: f64) -> Solid {
     column(Gielis::circle(), 20.0, 1.7, low, high)
 }
 
-fn cap() -> Solid {
+pub(crate) fn cap() -> Solid {
     // The shell: the lower half of a rounded cylinder would close it, so it is cut at z = 0.
     let above = Solid::half_space([0.0, 0.0, -1.0], 0.0);
     let dome = column(Gielis::circle(), 3.2, 35.0, -30.0, 30.0);

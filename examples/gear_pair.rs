@@ -120,6 +120,19 @@ fn in_mesh(gears: [&Gear; 2], parts: [Solid; 2], angle: f64) -> [Solid; 2] {
     [parts[0].rotate_z(rad(angle)), parts[1].rotate_z(rad(phase - ratio * angle)).translate([distance, 0.0, 0.0])]
 }
 
+fn gears() -> [Gear; 2] {
+    let pinion = Gear { teeth: 18, bore: 6.0, hub: 10.5, holes: None };
+    let wheel = Gear { teeth: 30, bore: 8.0, hub: 14.0, holes: Some((6, 4.6)) };
+    [pinion, wheel]
+}
+
+/// The pinion and the wheel in mesh.
+pub(crate) fn pair() -> Solid {
+    let [pinion, wheel] = gears();
+    let [first, second] = in_mesh([&pinion, &wheel], [pinion.solid(), wheel.solid()], 0.0);
+    first | second
+}
+
 /// The narrowest gap between the teeth over a whole pitch, by sampling the plane where they
 /// meet, and whether intervals prove that they nowhere have a point in common.
 fn clearance(pinion: &Gear, wheel: &Gear) -> Result<(f64, bool), Box<dyn Error>> {
@@ -168,15 +181,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "target/examples".into()));
     std::fs::create_dir_all(&folder)?;
 
-    let pinion = Gear { teeth: 18, bore: 6.0, hub: 10.5, holes: None };
-    let wheel = Gear { teeth: 30, bore: 8.0, hub: 14.0, holes: Some((6, 4.6)) };
+    let [pinion, wheel] = gears();
     println!("A pair of spur gears, module {MODULE} mm, {} and {} teeth.", pinion.teeth, wheel.teeth);
     let (gap, free) = clearance(&pinion, &wheel)?;
     let proof = if free { "proved by intervals" } else { "NOT PROVED" };
     println!("  clearance in 12 positions over a pitch: {gap:.3} mm; that no teeth interpenetrate in them is {proof}");
 
-    let [first, second] = in_mesh([&pinion, &wheel], [pinion.solid(), wheel.solid()], 0.0);
-    let pair = first | second;
+    let pair = pair();
     let bounds = pair.bounds()?;
     println!("  {:.1} x {:.1} x {:.1} mm", bounds.size().x, bounds.size().y, bounds.size().z);
 

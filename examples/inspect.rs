@@ -19,7 +19,7 @@ use rvachev::fit::{RegisterSettings, inspect, register};
 use rvachev::{Camera, CellSize, MeshSettings, PointCloud, Solid, deg};
 
 /// The part, its hole moved and its boss raised.
-fn bracket(moved: f64, raised: f64) -> Solid {
+pub(crate) fn bracket(moved: f64, raised: f64) -> Solid {
     let plate = Solid::cuboid([60.0, 40.0, 8.0]).named("plate");
     let boss = Solid::cylinder(7.0, 20.0 + raised).translate([-16.0, 5.0, 0.5 * (20.0 + raised)]).named("boss");
     let hole = Solid::cylinder(5.0, 30.0).translate([15.0 + moved, -4.0, 0.0]).named("hole");

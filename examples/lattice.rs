@@ -52,7 +52,7 @@ fn block(inset: f64) -> Solid {
 }
 
 /// The block's skin, filled with the lattice, with a window.
-fn light_block() -> Solid {
+pub(crate) fn light_block() -> Solid {
     // The upper corner towards the viewer, its edges rounded.
     let corner = Solid::rounded_cuboid(2.0 * SEMI_AXES, 5.0);
     let window = corner.translate(SEMI_AXES * DVec3::new(0.95, -1.1, 1.05)).named("window");

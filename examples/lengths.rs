@@ -63,7 +63,7 @@ fn closing() -> Vec<Solid> {
 
 /// A block and a post that are flush at the top, joined sharply, by a fillet, a chamfer and a
 /// smooth blend.
-fn flush() -> Vec<Solid> {
+pub(crate) fn flush() -> Vec<Solid> {
     let block = Solid::cuboid([10.0, 6.0, 5.0]).translate([-3.0, 3.0, 0.0]);
     let post = Solid::cylinder(4.0, 5.0).translate([2.5, -0.5, 0.0]);
     let with = |blend| block.union_with(&post, blend);
@@ -85,7 +85,7 @@ fn comb() -> Solid {
 
 /// A ball of radius 1: what it does not fit into from outside is filled, and what it does not fit
 /// into inside is gone.
-fn no_fit() -> Vec<Solid> {
+pub(crate) fn no_fit() -> Vec<Solid> {
     vec![comb().paint(GREY), comb().filleted(1.0).paint(BLUE), comb().rounded(1.0).paint(GREEN)]
 }
 

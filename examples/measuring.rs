@@ -29,7 +29,7 @@ fn cut_open(solid: &Solid) -> Solid {
 }
 
 /// A rounded block with a bore.
-fn block() -> Solid {
+pub(crate) fn block() -> Solid {
     Solid::superellipsoid([8.0, 6.0, 5.0], 0.3, 0.6) - Solid::cylinder(2.5, 20.0).rotate_x(deg(90.0))
 }
 
@@ -52,7 +52,7 @@ fn made() -> Result<Solid, Box<dyn Error>> {
 }
 
 /// A tray with a rib that is drafted by 3° on both sides, and a boss with a hole.
-fn tray() -> Solid {
+pub(crate) fn tray() -> Solid {
     let tray = Solid::cuboid([60.0, 40.0, 14.0]) - Solid::cuboid([56.0, 37.0, 14.0]).translate([0.0, 0.0, 2.5]);
     let side = |sign: f64| Solid::half_space([sign * 0.9986, 0.0, 0.0523], 1.0);
     let rib = (Solid::cuboid([6.0, 38.0, 11.0]) & side(1.0) & side(-1.0)).translate([-12.0, 0.0, 0.0]);

@@ -30,7 +30,7 @@ const DIRECTION: DVec3 = DVec3::new(0.45, -1.0, 0.8);
 const GAP: f64 = 0.12;
 
 /// A flange: a disc with a pipe, bored through, and a ring of holes. Millimetres.
-fn flange() -> Solid {
+pub(crate) fn flange() -> Solid {
     let disc = Solid::cylinder(30.0, 8.0);
     let pipe = Solid::cylinder(12.0, 30.0).translate([0.0, 0.0, 15.0]);
     let holes = Solid::cylinder(3.5, 20.0).translate([22.0, 0.0, 0.0]).repeat_polar(6);
@@ -38,7 +38,7 @@ fn flange() -> Solid {
 }
 
 /// A bracket in inches, modelled in millimetres: two plates, a slot, and a grid of counterbores.
-fn bracket() -> Solid {
+pub(crate) fn bracket() -> Solid {
     let inch = 25.4;
     let foot = Solid::cuboid([4.0 * inch, 2.5 * inch, 0.5 * inch]);
     let back = Solid::cuboid([4.0 * inch, 0.5 * inch, 2.0 * inch]).translate([0.0, 1.0 * inch, 1.0 * inch]);
@@ -51,7 +51,7 @@ fn bracket() -> Solid {
 }
 
 /// A housing: a block with a pocket, a boss on its floor, and a bore through both. Millimetres.
-fn housing() -> Solid {
+pub(crate) fn housing() -> Solid {
     let block = Solid::cuboid([60.0, 44.0, 24.0]);
     let pocket = Solid::cuboid([48.0, 32.0, 24.0]).translate([0.0, 0.0, 8.0]);
     let boss = Solid::cylinder(9.0, 16.0).translate([8.0, 0.0, -2.0]);

@@ -59,7 +59,7 @@ fn groove(high: f64, width: f64, depth: f64) -> Solid {
     disc(RADIUS + 4.0, high - width, high) - disc(RADIUS - depth, high - 2.0 * width, high + width)
 }
 
-fn piston() -> Solid {
+pub(crate) fn piston() -> Solid {
     // The blank: a cylinder with a low dome for a crown.
     let dome = part(Gielis::circle(), square(2.0), [120.0, 120.0, 90.0], [0.0, 0.0, HEIGHT - 90.0]);
     let blank = (disc(RADIUS, 0.0, HEIGHT) & dome).named("blank");

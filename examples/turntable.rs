@@ -20,7 +20,7 @@ const WIDTH: u32 = 200;
 const HEIGHT: u32 = 150;
 
 /// A valve: a body with two flanges, a bonnet blended onto it, bores cut by brass.
-fn valve() -> Solid {
+pub(crate) fn valve() -> Solid {
     let iron = Paint { color: [52, 84, 120], roughness: 0.45 };
     let brass = Paint { color: [214, 164, 72], roughness: 0.25 };
     let red = Paint { color: [186, 44, 36], roughness: 0.35 };

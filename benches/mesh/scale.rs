@@ -3,7 +3,8 @@
 use glam::{DAffine3, DQuat, DVec3};
 use rvachev::{CellSize, Features, Mesh, MeshSettings, MinimalSurface, RFunction, Run, SheetLattice, Solid};
 
-use crate::measure::{Cost, InTurn, in_turn, measured, memory_apart};
+use crate::measure::{Cost, InTurn, in_turn, measured};
+use crate::memory::memory_apart;
 
 /// What the memory of a row is asked for by, beside its name.
 pub const SCALE: &str = "scale";

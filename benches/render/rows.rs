@@ -57,6 +57,13 @@ pub fn named() -> Vec<Row> {
     let cross = Profile::rectangle([1.8, 0.6]) | Profile::rectangle([0.6, 1.8]);
     let twisted = Extrusion { twist: deg(60.0), ..Extrusion::new(1.0) };
     rows.push(row("cross, twisted", 128, cross.extrude_with(&twisted)));
+    let zero = RFunction::Zero { m: 0 };
+    let parts = pawn().map(|part| Solid::formula(&part, Bounds::from_center(DVec3::ZERO, PAWN)));
+    rows.push(row("pawn, five formulas", 128, Solid::union_all(parts, zero)));
+    // Negative inside, the union is the R-conjunction.
+    let joined = pawn().into_iter().reduce(|a, b| a.clone() + b.clone() - (a.square() + b.square()).sqrt());
+    let whole = joined.map(|all| Solid::formula(&all, Bounds::from_center(DVec3::ZERO, PAWN)));
+    rows.extend(whole.map(|pawn| row("pawn, one formula", 128, pawn)));
     rows.push(row("s1, twisted", 128, rows[0].solid.twist(deg(40.0))));
     rows
 }
@@ -89,6 +96,18 @@ fn checkerboard() -> Solid {
         Solid::superellipsoid([0.5; 3], e[i], e[j]).translate(place)
     };
     Solid::union_all((0..5).flat_map(|i| (0..5).map(move |j| at(i, j))), RFunction::MIN_MAX)
+}
+
+const PAWN: DVec3 = DVec3::new(0.7, 0.7, 1.2);
+
+/// A pawn of five parts: each as a formula, negative inside.
+fn pawn() -> [Tree; 5] {
+    let (x, y, z) = Tree::axes();
+    let across = (x.square() + y.square()).sqrt();
+    let ball = |at: f32, r: f32| (x.square() + y.square() + (z.clone() - at).square()).sqrt() - r;
+    let disc = |at: f32, r: f32, h: f32| (across.clone() - r).max((z.clone() - at).abs() - h);
+    let neck = across.clone() - (z.clone() * -0.15 + 0.35);
+    [disc(-0.9, 0.6, 0.1), ball(-0.7, 0.5), neck.max(z.abs() - 0.8), disc(0.45, 0.32, 0.05), ball(0.75, 0.3)]
 }
 
 /// A formula that jumps.

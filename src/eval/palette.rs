@@ -12,7 +12,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 
 use super::coat::{Below, Coat, feet};
-use super::program::{Kind, Program};
+use super::program::{Edge, Kind, Program};
 use super::scene::Instance;
 use super::shares::LEAST;
 use crate::Paint;
@@ -36,10 +36,42 @@ pub struct Palette {
     pub(crate) program: Program,
     /// By leaf.
     coats: Arc<[Coat]>,
-    /// The leaves that a blend mixes with others of another paint.
-    blended: Arc<[bool]>,
+    /// By leaf, what mixes it with others of another paint, if a blend does.
+    blends: Arc<[Option<Program>]>,
     /// All of it.
     below: Below,
+}
+
+/// By leaf, the blend of various paints that it is an operand of, as a program: where the leaf
+/// decides, what is joined to that blend by min and max has no share. Of leaves with more than one
+/// such blend it is the whole program.
+fn mixed(program: &Program, below: &[Below], leaves: usize) -> Vec<Option<Program>> {
+    let whole = program.root.node();
+    let is_blend = |at: usize| matches!(&program.nodes[at].kind, Kind::Join { rule, .. } if *rule != Rule::MinMax);
+    // From the root down: the blend that mixes a node, and whether all ways to it lead through that.
+    let mut tops: Vec<Option<usize>> = vec![None; program.nodes.len()];
+    let mut is_reached = vec![false; program.nodes.len()];
+    let mut of_leaf = vec![None; leaves];
+    for (at, node) in program.nodes.iter().enumerate().rev() {
+        let starts = is_blend(at) && below[at] == Below::Various;
+        let top = tops[at].or(starts.then_some(at));
+        for edge in program.list(node) {
+            let (own, reached) = (&mut tops[edge.node()], &mut is_reached[edge.node()]);
+            *own = if *reached && *own != top { Some(whole) } else { top };
+            *reached = true;
+        }
+        if let (Some(top), Some(leaf)) = (top, node.valued_by()) {
+            let own: &mut Option<usize> = &mut of_leaf[program.instance(leaf).number as usize];
+            *own = Some(if own.is_some_and(|own| own != top) { whole } else { top });
+        }
+    }
+    let mut made: HashMap<usize, Program> = HashMap::new();
+    let part = |top: usize| {
+        let (nodes, operands) = (program.nodes.to_vec(), program.operands.to_vec());
+        program.trimmed(nodes, operands, program.simpler.to_vec(), Edge::new(top))
+    };
+    let mut blend = |top: usize| made.entry(top).or_insert_with(|| part(top)).clone();
+    of_leaf.into_iter().map(|top| top.map(&mut blend)).collect()
 }
 
 impl Palette {
@@ -53,7 +85,6 @@ impl Palette {
             None => coats.remove(&leaf.number).unwrap_or(Coat::One(None)),
         };
         let coats: Vec<Coat> = scene.leaves.iter().map(coat).collect();
-        let mut mixed = vec![false; coats.len()];
         let mut below: Vec<Below> = Vec::with_capacity(program.nodes.len());
         for node in &program.nodes[..] {
             let operands = program.list(node).iter().fold(Below::Nothing, |all, edge| all.with(below[edge.node()]));
@@ -63,25 +94,9 @@ impl Palette {
             };
             below.push(all);
         }
-        // From the root down, what a blend of various paints is made of.
-        let mut blended = vec![false; program.nodes.len()];
-        for (at, node) in program.nodes.iter().enumerate().rev() {
-            let blends = match &node.kind {
-                Kind::Join { rule, .. } => *rule != Rule::MinMax,
-                Kind::Leaf(_) | Kind::Shift(_) => false,
-            };
-            blended[at] |= blends && below[at] == Below::Various;
-            if blended[at] {
-                for edge in program.list(node) {
-                    blended[edge.node()] = true;
-                }
-                if let Some(leaf) = node.valued_by() {
-                    mixed[program.instance(leaf).number as usize] = true;
-                }
-            }
-        }
+        let blends = mixed(&program, &below, coats.len());
         let below = below.get(program.root.node()).copied().unwrap_or(Below::Nothing);
-        Palette { program, coats: coats.into(), blended: mixed.into(), below }
+        Palette { program, coats: coats.into(), blends: blends.into(), below }
     }
 
     /// The paint of all parts.
@@ -119,7 +134,12 @@ impl Palette {
 
     /// Whether a blend mixes the paint of a leaf with that of others.
     fn is_blended(&self, owner: u32) -> bool {
-        self.blended.get(self.program.leaf_of(owner) as usize).is_some_and(|blended| *blended)
+        self.blend_of(owner).is_some()
+    }
+
+    /// What mixes the paint of a leaf with that of others, if a blend does.
+    fn blend_of(&self, owner: u32) -> Option<&Program> {
+        self.blends.get(self.program.leaf_of(owner) as usize)?.as_ref()
     }
 
     /// The paint at a point of the surface that the leaf `owner` decides: a mixture where a
@@ -156,10 +176,9 @@ impl Palette {
         let mut found = Vec::new();
         let mut pending = vec![(self, owner, p, 1.0)];
         while let Some((palette, owner, p, share)) = pending.pop() {
-            let leaves = if palette.is_blended(owner) {
-                palette.program.shares(p)
-            } else {
-                vec![(palette.program.leaf_of(owner), 1.0)]
+            let leaves = match palette.blend_of(owner) {
+                Some(blend) => blend.shares(p),
+                None => vec![(palette.program.leaf_of(owner), 1.0)],
             };
             for (leaf, part) in leaves {
                 match palette.coats.get(leaf as usize) {
@@ -187,5 +206,33 @@ impl fmt::Debug for Palette {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let painted = self.coats.iter().filter(|coat| !matches!(coat, Coat::One(None))).count();
         write!(f, "Palette({painted} of {} leaves painted)", self.coats.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Blend, Solid};
+
+    #[test]
+    fn mixtures_ask_their_blend_alone() {
+        let [iron, brass, red] = [[60, 90, 120], [210, 160, 70], [180, 40, 40]];
+        let ball = |x: f64, color: [u8; 3]| Solid::sphere(1.0).translate([x, 0.0, 0.0]).paint(color);
+        let smooth = Blend::Smooth { radius: 0.5 };
+        let pair = ball(0.0, iron).union_with(ball(1.5, brass), smooth);
+        // Of the whole, and in a row of many where nothing else is painted alike.
+        let all = &pair | ball(6.0, red) | ball(9.0, iron);
+        let (alone, palette) = (pair.palette().unwrap(), all.palette().unwrap());
+        for x in [0.0, 0.6, 0.75, 0.9, 1.5] {
+            let p = [x, 0.0, 0.8];
+            let owner = all.owner(p).unwrap().index;
+            assert_eq!(palette.blend_of(owner).unwrap().leaf_count(), 2);
+            assert_eq!(palette.at(owner, p), alone.at(pair.owner(p).unwrap().index, p));
+        }
+        assert!(palette.blend_of(all.owner([6.0, 0.0, 0.9]).unwrap().index).is_none());
+        // What is in two blends is asked of the whole.
+        let twice = pair.union_with(ball(3.0, red), smooth) | pair.union_with(ball(-1.5, red), smooth);
+        let owner = twice.owner([0.0, 0.0, 0.9]).unwrap().index;
+        let palette = twice.palette().unwrap();
+        assert!(palette.blend_of(owner).is_some() && palette.at(owner, [0.75, 0.0, 0.8]).is_some());
     }
 }

@@ -30,13 +30,18 @@ pub struct MeshLayers<'a> {
     bins: Vec<u32>,
 }
 
-/// A vertex in the picture.
-#[derive(Clone, Copy)]
-struct Corner {
-    /// In fractions of a pixel, with the key; `None` if it is beyond what can be drawn.
-    drawn: Option<(i32, i32, f64)>,
-    /// Relative to the eye.
-    relative: DVec3,
+/// A vertex in the picture, in fractions of a pixel, with the key.
+type Corner = (i32, i32, f64);
+
+/// That of a vertex that is beyond what can be drawn, by its key.
+const BEYOND: Corner = (0, 0, f64::NAN);
+
+/// What of a mesh is made ready.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sides {
+    Both,
+    /// Of a closed mesh that is seen from outside nothing else shows.
+    Fronts,
 }
 
 impl RasterView {
@@ -45,7 +50,7 @@ impl RasterView {
     /// Uses the rayon pool of the caller ([`Run::install`](crate::Run::install) chooses one).
     #[must_use]
     pub fn layers<'a>(&self, mesh: ClosedMesh<'a>) -> MeshLayers<'a> {
-        MeshLayers::whole(mesh.mesh(), self, true)
+        MeshLayers::whole(mesh.mesh(), self, true, Sides::Both)
     }
 
     /// [`layers`](RasterView::layers) with a choice of threads, a cancel token and a progress sink.
@@ -71,14 +76,22 @@ impl RasterView {
     ///
     /// [`Cancelled`].
     pub fn layers_with<'a>(&self, mesh: ClosedMesh<'a>, run: &Run) -> Result<MeshLayers<'a>, Cancelled> {
-        run.install(|| MeshLayers::new(mesh.mesh(), self, true, run))
+        run.install(|| MeshLayers::new(mesh.mesh(), self, (true, Sides::Both), run))
     }
 
     /// The layers of any mesh, also of an open one. They can be drawn
     /// ([`Buffers::draw`](super::Buffers::draw)), but not be joined with others.
     #[must_use]
     pub fn surface<'a>(&self, mesh: &'a Mesh) -> MeshLayers<'a> {
-        MeshLayers::whole(mesh, self, false)
+        MeshLayers::whole(mesh, self, false, Sides::Both)
+    }
+
+    /// What is seen of a closed mesh: its front faces, unless the near plane may cut it. They can be
+    /// drawn, and nothing else.
+    pub(crate) fn seen<'a>(&self, mesh: &'a Mesh) -> MeshLayers<'a> {
+        let is_before = |corner: DVec3| self.clearance(0, self.relative(corner)) > 0.0;
+        let is_outside = mesh.bounds().corners().into_iter().all(is_before);
+        MeshLayers::whole(mesh, self, false, if is_outside { Sides::Fronts } else { Sides::Both })
     }
 
     /// [`surface`](RasterView::surface) with a choice of threads, a cancel token and a progress
@@ -88,13 +101,13 @@ impl RasterView {
     ///
     /// [`Cancelled`].
     pub fn surface_with<'a>(&self, mesh: &'a Mesh, run: &Run) -> Result<MeshLayers<'a>, Cancelled> {
-        run.install(|| MeshLayers::new(mesh, self, false, run))
+        run.install(|| MeshLayers::new(mesh, self, (false, Sides::Both), run))
     }
 }
 
 impl<'a> MeshLayers<'a> {
     /// The layers when nobody cancels.
-    fn whole(mesh: &'a Mesh, view: &RasterView, is_closed: bool) -> MeshLayers<'a> {
+    fn whole(mesh: &'a Mesh, view: &RasterView, is_closed: bool, sides: Sides) -> MeshLayers<'a> {
         let none = MeshLayers {
             mesh,
             view: *view,
@@ -104,10 +117,15 @@ impl<'a> MeshLayers<'a> {
             starts: Vec::new(),
             bins: Vec::new(),
         };
-        MeshLayers::new(mesh, view, is_closed, &Run::default()).unwrap_or(none)
+        MeshLayers::new(mesh, view, (is_closed, sides), &Run::default()).unwrap_or(none)
     }
 
-    fn new(mesh: &'a Mesh, view: &RasterView, is_closed: bool, run: &Run) -> Result<MeshLayers<'a>, Cancelled> {
+    fn new(
+        mesh: &'a Mesh,
+        view: &RasterView,
+        (is_closed, sides): (bool, Sides),
+        run: &Run,
+    ) -> Result<MeshLayers<'a>, Cancelled> {
         let run = run.stage(0.0, 1.0);
         run.check()?;
         let [preparing, sorting] = run.stages([3.0, 1.0]);
@@ -117,7 +135,7 @@ impl<'a> MeshLayers<'a> {
             for bound in 0..RasterView::BOUNDS {
                 is_whole &= view.clearance(bound, relative) > 0.0;
             }
-            Corner { drawn: if is_whole { Some(snapped(view, relative)) } else { None }, relative }
+            if is_whole { snapped(view, relative) } else { BEYOND }
         };
         let corners: Vec<Corner> = jobs::in_order(mesh.positions().len(), |n| corner(&mesh.positions()[n]));
         let meter = Meter::new(&preparing, mesh.triangles().len());
@@ -126,8 +144,13 @@ impl<'a> MeshLayers<'a> {
             let mut part = (Vec::with_capacity(triangles.len()), false);
             for (i, t) in triangles.iter().enumerate() {
                 let face = (chunk * CHUNK + i) as u32;
-                let [a, b, c] = [corners[t[0] as usize], corners[t[1] as usize], corners[t[2] as usize]];
-                part.1 |= prepare(view, [a, b, c], face, &mut part.0);
+                let drawn = [corners[t[0] as usize], corners[t[1] as usize], corners[t[2] as usize]];
+                if drawn.iter().all(|(.., key)| !key.is_nan()) {
+                    add(view, drawn, (face, sides), &mut part.0);
+                } else {
+                    let relative = mesh.corners(*t).map(|p| view.relative(p));
+                    part.1 |= add_cut(view, relative, (face, sides), &mut part.0);
+                }
             }
             meter.add(triangles.len() as u64);
             Ok(part)
@@ -181,19 +204,27 @@ impl<'a> MeshLayers<'a> {
     /// shows any, its column and row, what it shows and how deep it lies. `target` is scratch
     /// memory.
     pub(crate) fn seen(&self, tile: &Tile, target: &mut Target, mut see: impl FnMut([u32; 2], SurfaceId, f64)) {
-        if !self.touches(tile) {
+        if !self.draws(tile, target) {
             return;
         }
-        target.clear_depth();
-        target.draw(self, 0, None, tile);
-        for (row, y) in (0..).zip(tile.y..tile.y + tile.height) {
-            for (column, x) in (0..).zip(tile.x..tile.x + tile.width) {
-                let i = row * Tile::SIDE as usize + column;
-                if target.depth[i] < f64::INFINITY {
-                    see([x, y], target.id(i), target.depth[i]);
+        for y in tile.y..tile.y + tile.height {
+            for x in tile.x..tile.x + tile.width {
+                if let Some((id, depth)) = target.seen(tile, [x, y]) {
+                    see([x, y], id, depth);
                 }
             }
         }
+    }
+
+    /// Draws what of the mesh is seen in a tile, from either side, to scratch memory; whether there
+    /// may be any.
+    pub(crate) fn draws(&self, tile: &Tile, target: &mut Target) -> bool {
+        let touches = self.touches(tile);
+        if touches {
+            target.clear_depth();
+            target.draw(self, 0, None, tile);
+        }
+        touches
     }
 
     /// The view that it is drawn in.
@@ -273,23 +304,16 @@ fn for_tiles(triangle: &Triangle, fraction: u32, across: u32, down: u32, mut cal
 }
 
 #[inline]
-fn snapped(view: &RasterView, relative: DVec3) -> (i32, i32, f64) {
+fn snapped(view: &RasterView, relative: DVec3) -> Corner {
     let [x, y, z] = view.picture(relative);
     let one = f64::from(1u32 << view.fraction);
     // Within the guard: the conversions are exact.
     ((x * one).round() as i32, (y * one).round() as i32, view.key(z))
 }
 
-/// Adds a triangle, or what is left of it within the bounds of what can be drawn. Whether the
-/// near plane cut it.
-#[inline]
-fn prepare(view: &RasterView, corners: [Corner; 3], face: u32, out: &mut Vec<Triangle>) -> bool {
-    let [a, b, c] = &corners;
-    if let (Some(a), Some(b), Some(c)) = (a.drawn, b.drawn, c.drawn) {
-        add(view, [a, b, c], face, out);
-        return false;
-    }
-    let relative = corners.map(|c| c.relative);
+/// Adds what is left of a triangle, whose corners are relative to the eye, within the bounds of what
+/// can be drawn. Whether the near plane cut it.
+fn add_cut(view: &RasterView, relative: [DVec3; 3], face: (u32, Sides), out: &mut Vec<Triangle>) -> bool {
     let is_cut = relative.iter().any(|&q| view.clearance(0, q) <= 0.0);
     let mut polygon = relative.to_vec();
     for bound in 0..RasterView::BOUNDS {
@@ -303,10 +327,10 @@ fn prepare(view: &RasterView, corners: [Corner; 3], face: u32, out: &mut Vec<Tri
     is_cut
 }
 
-/// Adds a triangle if there is a pixel's middle in its box.
+/// Adds a triangle if it is wanted and there is a pixel's middle in its box.
 #[inline]
-fn add(view: &RasterView, corners: [(i32, i32, f64); 3], face: u32, out: &mut Vec<Triangle>) {
-    if let Some(triangle) = Triangle::new(corners, face) {
+fn add(view: &RasterView, corners: [Corner; 3], (face, sides): (u32, Sides), out: &mut Vec<Triangle>) {
+    if let Some(triangle) = Triangle::new(corners, face).filter(|t| sides == Sides::Both || t.is_front()) {
         let [left, right, top, bottom] = triangle.pixels(view.fraction);
         let (width, height) = (view.width as i32, view.height as i32);
         if left <= right && top <= bottom && left < width && right >= 0 && top < height && bottom >= 0 {
@@ -340,4 +364,38 @@ fn cut(polygon: &[DVec3], clearance: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
         }
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Camera, MeshSettings, Solid};
+
+    #[test]
+    fn front_faces_show_all_of_a_closed_mesh_from_outside() {
+        let solid = (Solid::cuboid([2.0, 1.5, 1.0]) - Solid::cylinder(0.5, 3.0)) | Solid::torus(1.2, 0.2);
+        let mesh = solid.mesh(&MeshSettings::default()).unwrap();
+        let outside = Camera::framing(&mesh.bounds());
+        let within = Camera { eye: DVec3::new(0.75, 0.5, 0.0), ..outside };
+        for (camera, is_outside) in [(outside, true), (outside.parallel(), true), (within, false)] {
+            let view = RasterView::new(&camera, 200, 150).unwrap();
+            let view = if view.near() > 0.0 { view.with_near(1e-6).unwrap() } else { view };
+            let (all, seen) = (view.surface(&mesh), view.seen(&mesh));
+            assert!(!is_outside || 3 * seen.triangles.len() < 2 * all.triangles.len());
+            let mut targets = [Target::new(), Target::new()];
+            let [across, down] = Tile::grid(200, 150);
+            let mut count = 0;
+            for tile in (0..across * down).map(|number| Tile::number(number, 200, 150)) {
+                let mut shown = Vec::new();
+                for (layers, target) in [&all, &seen].into_iter().zip(&mut targets) {
+                    let mut own = Vec::new();
+                    layers.seen(&tile, target, |at, id, depth| own.push((at, id.face, id.facing, depth)));
+                    shown.push(own);
+                }
+                count += shown[0].len();
+                assert!(shown[0] == shown[1], "{tile:?}");
+            }
+            assert!(count > 3000, "{count}");
+        }
+    }
 }

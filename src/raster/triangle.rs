@@ -80,6 +80,12 @@ impl Triangle {
         Some(Triangle { x: [a.0, b.0, c.0], y: [a.1, b.1, c.1], key: [a.2, b.2, c.2], face, facing })
     }
 
+    /// Whether it is seen from its front.
+    #[inline]
+    pub(super) fn is_front(&self) -> bool {
+        self.facing == Facing::Front
+    }
+
     /// The first and last column and row whose pixels' middles are within the triangle's box;
     /// empty if the last is before the first.
     #[inline(always)]

@@ -19,7 +19,9 @@ use super::gbuffer::{Surface, Window};
 use super::scene::Scene;
 use super::settings::{RenderError, RenderSettings, setting};
 use crate::mesh::Subject;
-use crate::raster::{Facing, LayerSource, MeshLayers, RasterError, RasterView, Slant, SurfaceId, Target, Tile};
+use crate::raster::{
+    ClosedMesh, Facing, LayerSource, MeshLayers, RasterError, RasterView, Slant, SurfaceId, Target, Tile,
+};
 use crate::{Camera, CellSize, Mesh, MeshSettings, Run, ThinFeatures};
 
 /// Where something may be thinner than a cell, cells of a quarter of the size are tried.
@@ -36,7 +38,7 @@ const FACING: f64 = 1e-2;
 impl Scene {
     /// The mesh that drafts show, at so many cells along the longest side. The one that was last
     /// asked for is kept.
-    pub(super) fn draft_mesh(&self, cells: u32, run: &Run) -> Result<Arc<Mesh>, RenderError> {
+    pub(super) fn draft_mesh(&self, cells: u32, run: &Run) -> Result<Arc<DraftMesh>, RenderError> {
         if self.is_empty() {
             return Ok(Arc::default());
         }
@@ -56,10 +58,19 @@ impl Scene {
         if found.possibly_lost() > 0 {
             found = mesh(ThinFeatures::Refine { halvings: HALVINGS }, &to_refine)?;
         }
-        let mesh = Arc::new(found);
+        let is_closed = ClosedMesh::new(&found).is_ok();
+        let mesh = Arc::new(DraftMesh { mesh: found, is_closed });
         *kept() = Some((cells, mesh.clone()));
         Ok(mesh)
     }
+}
+
+/// What drafts show of a scene.
+#[derive(Default)]
+pub(super) struct DraftMesh {
+    mesh: Mesh,
+    /// Whether its front faces hide the others.
+    is_closed: bool,
 }
 
 /// A mesh in a picture.
@@ -74,7 +85,7 @@ pub(super) struct Draft<'a> {
 impl<'a> Draft<'a> {
     pub(super) fn new(
         scene: &'a Scene,
-        mesh: &'a Mesh,
+        DraftMesh { mesh, is_closed }: &'a DraftMesh,
         camera: &Camera,
         settings: &RenderSettings,
     ) -> Result<Draft<'a>, RenderError> {
@@ -88,7 +99,7 @@ impl<'a> Draft<'a> {
             })?;
             let near = NEAR * camera.eye.distance(camera.target);
             let view = if view.near() > 0.0 { view.with_near(near).map_err(|_| too_large())? } else { view };
-            Ok::<_, RenderError>(view.surface(mesh))
+            Ok::<_, RenderError>(if *is_closed { view.seen(mesh) } else { view.surface(mesh) })
         };
         let pixels = layers(1)?;
         let samples = if samples > 1 { Some(layers(samples)?) } else { None };
@@ -131,34 +142,33 @@ impl<'a> Draft<'a> {
         let across = (width / columns) as usize;
         let rows = numbers.len() as u32 / across as u32;
         let (first, last) = (top * columns / Tile::SIDE, ((top + rows) * columns).div_ceil(Tile::SIDE));
-        let number = |x: u32, y: u32| {
-            let row = (y / columns).checked_sub(top).filter(|row| *row < rows)?;
-            let number = numbers[row as usize * across + (x / columns) as usize];
-            (number != u32::MAX).then_some(number)
-        };
-        let found = (first..last).into_par_iter().map_init(Target::new, |target, band| {
-            let mut found = Vec::new();
-            for tile in row_of_tiles(layers, band) {
-                let (right, bottom) = (tile.x + tile.width - 1, tile.y + tile.height - 1);
-                let mut pixels = (tile.y / columns..=bottom / columns)
-                    .flat_map(|y| (tile.x / columns..=right / columns).map(move |x| (x, y)));
-                if pixels.all(|(x, y)| number(x * columns, y * columns).is_none()) {
-                    continue;
-                }
-                let mut last = None;
-                layers.seen(&tile, target, |[x, y], id, depth| {
-                    if let Some(number) = number(x, y) {
-                        let place = number * columns * columns + y % columns * columns + x % columns;
-                        found.push((place, self.surface(layers, &mut last, [x, y], id, depth)));
-                    }
-                });
-            }
-            found
-        });
-        let found: Vec<Vec<(u32, Surface)>> = found.collect();
         let mut surfaces = vec![Surface::NONE; count * (columns * columns) as usize];
-        for (place, surface) in found.into_iter().flatten() {
-            surfaces[place as usize] = surface;
+        let (mut target, mut asked) = (Target::new(), Vec::new());
+        for tile in (first..last).flat_map(|band| row_of_tiles(layers, band)) {
+            // The pixels of the picture that have samples in the tile.
+            let (right, bottom) = (tile.x + tile.width, tile.y + tile.height);
+            asked.clear();
+            for y in (tile.y / columns).max(top)..bottom.div_ceil(columns).min(top + rows) {
+                let row = (y - top) as usize * across;
+                let range = (tile.x / columns) as usize..right.div_ceil(columns) as usize;
+                let own = (range.start as u32..).zip(&numbers[row + range.start..row + range.end]);
+                asked.extend(own.filter(|(_, number)| **number != u32::MAX).map(|(x, number)| ([x, y], *number)));
+            }
+            if asked.is_empty() || !layers.draws(&tile, &mut target) {
+                continue;
+            }
+            let mut last = None;
+            for &([left, upper], number) in &asked {
+                let own = &mut surfaces[(number * columns * columns) as usize..];
+                for y in (upper * columns).max(tile.y)..((upper + 1) * columns).min(bottom) {
+                    for x in (left * columns).max(tile.x)..((left + 1) * columns).min(right) {
+                        if let Some((id, depth)) = target.seen(&tile, [x, y]) {
+                            let place = (y - upper * columns) * columns + x - left * columns;
+                            own[place as usize] = self.surface(layers, &mut last, [x, y], id, depth);
+                        }
+                    }
+                }
+            }
         }
         surfaces
     }

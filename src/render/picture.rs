@@ -13,7 +13,7 @@
 //! A ray inside an edge pixel has the visibility of the best match among the nine pixels about it;
 //! without a match it sends shadow and sky rays of its own.
 
-use glam::{DVec3, Vec4};
+use glam::Vec4;
 use rayon::prelude::*;
 
 use super::draft::Draft;
@@ -25,11 +25,19 @@ use super::scene::Scene;
 use super::settings::{RenderSettings, Style};
 use super::shade::{Studio, Visibility};
 use super::spot::Spot;
+use crate::raster::Tile;
 use crate::{Cancelled, Rays, Run};
 use rvachev_num::{Meter, jobs};
 
 /// Pixels of a band, about: some tens of megabytes.
 const BAND: u32 = 1 << 19;
+
+/// Rows that a thread makes at a time where nothing hides light: as many as a tile of a draft has.
+const PLAIN_ROWS: u32 = Tile::SIDE;
+
+/// Rays of a pixel that meet what one of so many before them has met, about as it is turned, have
+/// its light where nothing is hidden.
+const KNOWN: usize = 3;
 
 /// Shares of the key light that differ by more show the edge of a hard shadow.
 const SHADOW_EDGE: f32 = 0.3;
@@ -60,10 +68,16 @@ struct Band {
     top: u32,
     width: u32,
     spots: Vec<Spot>,
+    /// Empty where nothing hides light.
     open: Vec<Visibility>,
 }
 
 impl Band {
+    /// How much light there is at a place.
+    fn open(&self, at: usize) -> Visibility {
+        self.open.get(at).copied().unwrap_or(Visibility::FULL)
+    }
+
     /// The place of a pixel of the picture.
     fn place(&self, x: u32, y: u32) -> usize {
         ((y - self.top) * self.width + x) as usize
@@ -133,65 +147,41 @@ impl Picture<'_> {
         finish: &(impl Fn([f32; 4]) -> P + Sync),
         pixels: &mut [P],
     ) -> Result<(), Cancelled> {
-        let RenderSettings { width, height, style, samples, .. } = *self.settings;
+        let RenderSettings { width, height, .. } = *self.settings;
         let part = |row: u32| f64::from(row) / f64::from(height);
         let run = &run.stage(part(top), part(end));
-        let obstacles = self.obstacles.as_ref();
-        if samples < 2 && obstacles.is_none() && style != Style::Technical {
-            return self.plain((top, end), run, finish, pixels);
-        }
-        // One pixel for the comparison with neighbours, and what the means and the lines reach.
-        let halo = 1 + (REACH as u32).max(if style == Style::Technical { Lines::reach(height) } else { 0 });
+        let Some(obstacles) = &self.obstacles else { return self.plain((top, end), run, finish, pixels) };
+        // One pixel for the comparison with neighbours, and what the means reach.
+        let halo = 1 + REACH as u32;
         let (first, last) = (top.saturating_sub(halo), (end + halo).min(height));
         let window = Window { top: first, height: last - first, ..Window::whole(width, height) };
         // How long it takes to see what the pixels show, how much light is there, what is at edges,
         // how much light is there, and to shade all.
-        let [light, match_light] = if obstacles.is_some() { [0.3, 0.05] } else { [0.0, 0.0] };
-        let [to_see, to_light, to_divide, to_match, to_shade] = run.stages([0.35, light, 0.2, match_light, 0.1]);
+        let [to_see, to_light, to_divide, to_match, to_shade] = run.stages([0.35, 0.3, 0.2, 0.05, 0.1]);
         let seen = self.surfaces(window, &to_see)?;
         let spots: Vec<Spot> = jobs::in_order(seen.len(), |i| {
             let (x, y) = (i as u32 % width, first + i as u32 / width);
             self.spot(x, y, &seen[i])
         });
         drop(seen);
-        let open = match obstacles {
-            None => vec![Visibility::FULL; spots.len()],
-            Some(obstacles) => {
-                let rows = (width as usize, first as usize);
-                obstacles.smoothed(&spots, rows, |t| self.rays.pixel_size(t), &to_light)?
-            }
-        };
+        let rows = (width as usize, first as usize);
+        let open = obstacles.smoothed(&spots, rows, |t| self.rays.pixel_size(t), &to_light)?;
         to_light.report(1.0);
         let band = Band { top: first, width, spots, open };
-        let fine = self.fine(&band, (top, end), obstacles, &to_divide)?;
+        let fine = self.fine(&band, (top, end), &to_divide)?;
         to_divide.report(1.0);
-        let light = self.fine_light(&band, &fine, obstacles, &to_match)?;
+        let light = self.fine_light(&band, &fine, &to_match)?;
         to_match.report(1.0);
-        let n2 = (samples * samples) as usize;
-        let lines = (style == Style::Technical).then(|| Lines {
-            height,
-            samples,
-            width,
-            spots: &band.spots,
-            fine: &fine,
-            pixel: &self.rays,
-        });
         let meter = Meter::new(&to_shade, end - top);
         (top..end).into_par_iter().zip(pixels.par_chunks_mut(width as usize)).try_for_each(|(y, row)| {
             meter.check()?;
             let behind = self.behind(f64::from(y) + 0.5);
             for (x, pixel) in (0..width).zip(row) {
                 let at = band.place(x, y);
-                let mut light = match fine.numbers[at] {
-                    u32::MAX => self.shade(&band.spots[at], band.open[at], behind),
-                    number => {
-                        let own = &light[number as usize * n2..][..n2];
-                        own.iter().copied().sum::<Vec4>() / n2 as f32
-                    }
+                let light = match fine.numbers[at] {
+                    u32::MAX => self.shade(&band.spots[at], band.open(at), || behind),
+                    number => light[number as usize],
                 };
-                if let Some(lines) = &lines {
-                    light = lines.drawn(light, at);
-                }
                 *pixel = finish(light.to_array());
             }
             meter.add(1);
@@ -201,8 +191,13 @@ impl Picture<'_> {
         Ok(())
     }
 
-    /// The rows from `top` to `end` of a picture whose pixels have one ray each, and no shadows or
-    /// lines: they need not know of each other.
+    /// How far lines reach from the pixels that they are drawn between, if there are any.
+    fn reach(&self) -> u32 {
+        if self.settings.style == Style::Technical { Lines::reach(self.settings.height) } else { 0 }
+    }
+
+    /// The rows from `top` to `end` of a picture without shadows, whose pixels know of those beside
+    /// them alone: some rows at a time by each thread, so that what is known of them stays near.
     fn plain<P: Pixel>(
         &self,
         (top, end): (u32, u32),
@@ -210,24 +205,54 @@ impl Picture<'_> {
         finish: &(impl Fn([f32; 4]) -> P + Sync),
         pixels: &mut [P],
     ) -> Result<(), Cancelled> {
-        let RenderSettings { width, height, .. } = *self.settings;
-        let window = Window { top, height: end - top, ..Window::whole(width, height) };
-        let seen = self.surfaces(window, &run.stage(0.0, 0.8))?;
-        let rows = seen.par_chunks(width as usize).zip(pixels.par_chunks_mut(width as usize));
-        let to_shade = run.stage(0.8, 1.0);
+        let RenderSettings { width, height, samples, style, .. } = *self.settings;
+        let columns = width as usize;
+        let halo = u32::from(samples > 1 || style == Style::Technical) + self.reach();
+        let (first, last) = (top.saturating_sub(halo), (end + halo).min(height));
+        let window = Window { top: first, height: last - first, ..Window::whole(width, height) };
+        let [to_see, to_shade] = run.stages([0.6, 0.4]);
+        let seen = self.surfaces(window, &to_see)?;
+        let rows = PLAIN_ROWS * (1 + self.reach());
         let meter = Meter::new(&to_shade, end - top);
-        (top..end).into_par_iter().zip(rows).try_for_each(|(y, (surfaces, row))| {
+        // Nobody is told of the few rays at edges.
+        let unheard = Run { progress: None, ..run.clone() };
+        pixels.par_chunks_mut(rows as usize * columns).enumerate().try_for_each(|(part, pixels)| {
             meter.check()?;
-            // Without shadows the ground looks like what is behind it.
-            let behind = finish(self.behind(f64::from(y) + 0.5).to_array());
-            for ((x, surface), pixel) in (0..width).zip(surfaces).zip(row) {
-                *pixel = if surface.is_hit() {
-                    finish(self.solid(&self.spot(x, y, surface), Visibility::FULL).to_array())
-                } else {
-                    behind
-                };
+            let top = top + part as u32 * rows;
+            let end = top + (pixels.len() / columns) as u32;
+            let (first, last) = (top.saturating_sub(halo).max(first), (end + halo).min(last));
+            let own = &seen[(first - window.top) as usize * columns..(last - window.top) as usize * columns];
+            let rows = (first..).zip(own.chunks(columns));
+            let spots = rows.flat_map(|(y, row)| (0..).zip(row).map(move |(x, surface)| self.spot(x, y, surface)));
+            let band = Band { top: first, width, spots: spots.collect(), open: Vec::new() };
+            let fine = self.fine(&band, (top, end), &unheard)?;
+            let light = self.fine_light(&band, &fine, &unheard)?;
+            let lines = (style == Style::Technical).then(|| Lines {
+                height,
+                samples,
+                width,
+                spots: &band.spots,
+                fine: &fine,
+                pixel: &self.rays,
+            });
+            for (y, row) in (top..).zip(pixels.chunks_mut(columns)) {
+                // Without shadows the ground looks like what is behind it.
+                let behind = self.behind(f64::from(y) + 0.5);
+                let empty = finish(behind.to_array());
+                for (x, pixel) in (0..width).zip(row) {
+                    let at = band.place(x, y);
+                    let spot = &band.spots[at];
+                    *pixel = match fine.numbers[at] {
+                        u32::MAX if spot.is_solid() => finish(self.solid(spot, Visibility::FULL).to_array()),
+                        u32::MAX => empty,
+                        number => {
+                            let light = light[number as usize];
+                            finish(lines.as_ref().map_or(light, |lines| lines.drawn(light, at)).to_array())
+                        }
+                    };
+                }
+                meter.add(1);
             }
-            meter.add(1);
             Ok::<_, Cancelled>(())
         })?;
         run.report(1.0);
@@ -238,27 +263,21 @@ impl Picture<'_> {
     ///
     /// Rows and columns of the rays are sheared, so that no two of the n² are at the same height
     /// or side: an outline near the horizontal or vertical passes them one by one.
-    fn fine(
-        &self,
-        band: &Band,
-        (top, end): (u32, u32),
-        obstacles: Option<&Obstacles<'_>>,
-        run: &Run,
-    ) -> Result<Fine, Cancelled> {
-        let RenderSettings { samples, width, height, style, .. } = *self.settings;
+    fn fine(&self, band: &Band, (top, end): (u32, u32), run: &Run) -> Result<Fine, Cancelled> {
+        let RenderSettings { samples, width, style, .. } = *self.settings;
         let mut numbers = vec![u32::MAX; band.spots.len()];
         // Lines are drawn where there are fine rays, be it one a pixel.
         if samples < 2 && style != Style::Technical {
             return Ok(Fine { numbers, spots: Vec::new() });
         }
-        let hard = obstacles.is_some_and(Obstacles::is_hard);
+        let hard = self.obstacles.as_ref().is_some_and(Obstacles::is_hard);
         let differ = |a: usize, b: usize| {
             let (one, other) = (&band.spots[a], &band.spots[b]);
-            let pixel = self.rays.pixel_size(one.distance.min(other.distance));
-            one.differs(other, pixel) || hard && (band.open[a].key - band.open[b].key).abs() > SHADOW_EDGE
+            let pixel = |distance| self.rays.pixel_size(distance);
+            one.differs(other, pixel) || hard && (band.open(a).key - band.open(b).key).abs() > SHADOW_EDGE
         };
         // Lines are wider than a pixel: what is about an edge is sampled more often as well.
-        let reach = if style == Style::Technical { Lines::reach(height) } else { 0 };
+        let reach = self.reach();
         let (first, last) = (top.saturating_sub(reach).max(band.top), (end + reach).min(band.end()));
         let columns = width as usize;
         // By pixel, whether it differs from the one to its right, and from the one below.
@@ -291,31 +310,36 @@ impl Picture<'_> {
         // The rows and columns of a draft are level.
         let lean = |j: u32| if self.draft.is_some() { 0.5 } else { (f64::from(j) + 0.5) / f64::from(n) };
         let within = |i: u32, j: u32| (f64::from(i) + lean(j)) / f64::from(n);
-        let rays: Vec<(DVec3, DVec3)> = pixels
-            .par_iter()
-            .flat_map_iter(|&(x, y)| {
-                (0..n * n).map(move |k| {
-                    let (i, j) = (k % n, k / n);
-                    self.rays.ray(f64::from(x) + within(i, j), f64::from(y) + within(j, i))
-                })
-            })
-            .collect();
-        let hits = match &self.draft {
-            Some(draft) => draft.samples(&numbers, band.top, n, pixels.len()),
-            None => self.scene.hits(&rays, run)?,
+        let each: Vec<(u32, u32)> = (0..n * n).map(|k| (k % n, k / n)).collect();
+        let ray = |number: usize| {
+            let (x, y) = pixels[number / each.len()];
+            let (i, j) = each[number % each.len()];
+            self.rays.ray(f64::from(x) + within(i, j), f64::from(y) + within(j, i))
         };
-        let spots = jobs::in_order(rays.len(), |n| Spot::new(rays[n].0, rays[n].1, &hits[n], self.ground));
+        let count = pixels.len() * each.len();
+        let spots = match &self.draft {
+            Some(draft) => {
+                let hits = draft.samples(&numbers, band.top, n, pixels.len());
+                let spot = |number: usize| match &hits[number] {
+                    hit if hit.is_hit() || self.ground.is_some() => {
+                        let (origin, direction) = ray(number);
+                        Spot::new(origin, direction, hit, self.ground)
+                    }
+                    _ => Spot::NOTHING,
+                };
+                (0..count).map(spot).collect()
+            }
+            None => {
+                let rays = jobs::in_order(count, ray);
+                let hits = self.scene.hits(&rays, run)?;
+                jobs::in_order(count, |n| Spot::new(rays[n].0, rays[n].1, &hits[n], self.ground))
+            }
+        };
         Ok(Fine { numbers, spots })
     }
 
-    /// The light along each fine ray.
-    fn fine_light(
-        &self,
-        band: &Band,
-        fine: &Fine,
-        obstacles: Option<&Obstacles<'_>>,
-        run: &Run,
-    ) -> Result<Vec<Vec4>, Cancelled> {
+    /// The mean of the light along the fine rays of each pixel.
+    fn fine_light(&self, band: &Band, fine: &Fine, run: &Run) -> Result<Vec<Vec4>, Cancelled> {
         let n = self.settings.samples;
         let n2 = (n * n) as usize;
         let mut places = vec![0; fine.spots.len() / n2];
@@ -324,26 +348,39 @@ impl Picture<'_> {
                 places[*number as usize] = place;
             }
         }
-        let hard = obstacles.is_some_and(Obstacles::is_hard);
-        let matched: Vec<Option<Visibility>> = jobs::in_order(fine.spots.len(), |k| match obstacles {
-            None => Some(Visibility::FULL),
-            Some(_) => self.matching(band, &fine.spots[k], places[k / n2], hard),
-        });
-        let alone: Vec<usize> = (0..matched.len()).filter(|k| matched[*k].is_none()).collect();
-        let spots: Vec<Spot> = alone.iter().map(|k| fine.spots[*k]).collect();
-        let mut open: Vec<Visibility> = matched.iter().map(|open| open.unwrap_or(Visibility::FULL)).collect();
-        if let Some(obstacles) = obstacles {
-            for (k, seen) in alone.iter().zip(obstacles.seen(&spots, TILE, |i| alone[i], run)?) {
-                open[*k] = seen;
+        let open = match &self.obstacles {
+            None => Vec::new(),
+            Some(obstacles) => {
+                let hard = obstacles.is_hard();
+                let matched: Vec<Option<Visibility>> =
+                    jobs::in_order(fine.spots.len(), |k| self.matching(band, &fine.spots[k], places[k / n2], hard));
+                let alone: Vec<usize> = (0..matched.len()).filter(|k| matched[*k].is_none()).collect();
+                let spots: Vec<Spot> = alone.iter().map(|k| fine.spots[*k]).collect();
+                let mut open: Vec<Visibility> = matched.iter().map(|open| open.unwrap_or(Visibility::FULL)).collect();
+                for (k, seen) in alone.iter().zip(obstacles.seen(&spots, TILE, |i| alone[i], run)?) {
+                    open[*k] = seen;
+                }
+                open
             }
-        }
-        let row = |place: usize| f64::from(band.top + place as u32 / band.width);
-        let shade = |(k, spot): (usize, &Spot)| {
-            let down = (k % n2) as u32 / n;
-            let y = row(places[k / n2]) + (f64::from(down) + 0.5) / f64::from(n);
-            self.shade(spot, open[k], self.behind(y))
         };
-        Ok(jobs::in_order(fine.spots.len(), |k| shade((k, &fine.spots[k]))))
+        let open = |k: usize| open.get(k).copied().unwrap_or(Visibility::FULL);
+        let shares_light = self.obstacles.is_none();
+        Ok(jobs::in_order(places.len(), |number| {
+            let top = f64::from(band.top + places[number] as u32 / band.width);
+            let (mut sum, mut known) = (Vec4::ZERO, [(&Spot::NOTHING, Vec4::ZERO); KNOWN]);
+            for (k, spot) in fine.spots[number * n2..][..n2].iter().enumerate() {
+                let found = known.iter().find(|(other, _)| shares_light && spot.looks_like(other));
+                let light = found.map(|(_, light)| *light).unwrap_or_else(|| {
+                    let down = (f64::from(k as u32 / n) + 0.5) / f64::from(n);
+                    let light = self.shade(spot, open(number * n2 + k), || self.behind(top + down));
+                    known.rotate_right(1);
+                    known[0] = (spot, light);
+                    light
+                });
+                sum += light;
+            }
+            sum / n2 as f32
+        }))
     }
 
     /// The visibility of a spot, from the pixel at `place` and those about it; none if none of
@@ -365,7 +402,7 @@ impl Picture<'_> {
                     && spot.normal.dot(other.normal) > 0.9
                     && (spot.is_ground() || spot.steps(other) < near);
                 if fits {
-                    let open = band.open[at];
+                    let open = band.open(at);
                     edge = (edge.0.min(open.key), edge.1.max(open.key));
                     let away = spot.point.distance_squared(other.point);
                     if best.is_none_or(|(least, _)| away < least) {
@@ -408,13 +445,13 @@ impl Picture<'_> {
     }
 
     /// What a spot looks like with this behind it.
-    fn shade(&self, spot: &Spot, open: Visibility, behind: Vec4) -> Vec4 {
+    fn shade(&self, spot: &Spot, open: Visibility, behind: impl FnOnce() -> Vec4) -> Vec4 {
         if spot.is_solid() {
             self.solid(spot, open)
         } else if spot.is_ground() {
-            self.studio.ground(behind, open)
+            self.studio.ground(behind(), open)
         } else {
-            behind
+            behind()
         }
     }
 

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::cells::Cells;
+use super::draft::DraftMesh;
 use super::extent::{corners, lowest};
 use super::facets::Facets;
 use super::gbuffer::{GBuffer, Surface, Window};
@@ -16,7 +17,7 @@ use super::settings::RenderError;
 use super::tile::{Tracer, View, divide_top};
 use crate::distance::compiled_with;
 use crate::eval::Program;
-use crate::{Bounds, Cancelled, Hit, Mesh, Palette, Rays, Run, Solid};
+use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
 use rvachev_num::Meter;
 
 /// How far a ray from a hit starts off the surface, in proportion to the solid.
@@ -57,7 +58,7 @@ pub struct Scene {
     /// The scene that it was last cut to.
     pub(super) cut: Mutex<Option<Kept>>,
     /// What drafts show, and in how many cells, once somebody has asked for one.
-    pub(super) draft: Mutex<Option<(u32, Arc<Mesh>)>>,
+    pub(super) draft: Mutex<Option<(u32, Arc<DraftMesh>)>>,
     /// What hides light, and how fine it is, once somebody has asked for it.
     facets: Mutex<Option<(u32, Arc<Facets>)>>,
     /// The height of the lowest point, once somebody has asked for it.

@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::draft::Draft;
+use super::draft::{Draft, DraftMesh};
 use super::materials::Materials;
 use super::occlusion::Obstacles;
 use super::picture::{Picture, Pixel};
@@ -13,7 +13,7 @@ use super::settings::{Background, Quality, RenderError, RenderSettings, check_me
 use super::shade::Studio;
 use crate::geom::to_8bit;
 use crate::io::save_rows;
-use crate::{Camera, Cancelled, Image, Mesh, Run, Solid};
+use crate::{Camera, Cancelled, Image, Run, Solid};
 
 impl Solid {
     /// A picture of the solid.
@@ -210,7 +210,7 @@ struct Subject<'a> {
     /// What is left of it.
     cut: Option<Arc<Scene>>,
     /// The mesh of a draft; an empty one if there is nothing to see.
-    draft: Option<Arc<Mesh>>,
+    draft: Option<Arc<DraftMesh>>,
 }
 
 impl Subject<'_> {

@@ -10,6 +10,9 @@ const GROUND: u32 = u32::MAX - 1;
 /// Neighbours whose normals are further apart (cosine of 14°) show an edge.
 const SAME_NORMAL: f32 = 0.97;
 
+/// Those whose normals are closer (cosine of half a degree) have one light.
+const SAME_LIGHT: f32 = 0.999_96;
+
 /// Neighbours that are further from the other's tangent plane, in pixels, are a step.
 const STEP: f64 = 1.5;
 
@@ -93,14 +96,24 @@ impl Spot {
         self.is_solid() == other.is_solid() && self.is_ground() == other.is_ground()
     }
 
-    /// Whether an edge of the solid may pass between two neighbours; a pixel spans `pixel`.
+    /// Whether two of the solid in one pixel have about the same light.
     #[inline]
-    pub(super) fn differs(&self, other: &Spot, pixel: f64) -> bool {
+    pub(super) fn looks_like(&self, other: &Spot) -> bool {
+        self.is_solid()
+            && self.owner == other.owner
+            && self.is_front == other.is_front
+            && self.normal.dot(other.normal) > SAME_LIGHT
+    }
+
+    /// Whether an edge of the solid may pass between two neighbours; `pixel` tells how
+    /// wide a pixel is at a distance.
+    #[inline]
+    pub(super) fn differs(&self, other: &Spot, pixel: impl Fn(f64) -> f64) -> bool {
         match (self.is_solid(), other.is_solid()) {
             (true, true) => {
                 self.owner != other.owner
                     || self.normal.dot(other.normal) < SAME_NORMAL
-                    || self.steps(other) > STEP * pixel
+                    || self.steps(other) > STEP * pixel(self.distance.min(other.distance))
             }
             (solid, other) => solid != other,
         }

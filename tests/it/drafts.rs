@@ -7,6 +7,8 @@ use rvachev::{
     deg,
 };
 
+use crate::workpieces;
+
 fn settings(width: u32, height: u32, quality: Quality) -> RenderSettings {
     RenderSettings {
         width,
@@ -41,32 +43,49 @@ fn is_measured(entry: &Entry) -> bool {
 
 #[test]
 fn silhouettes_of_the_catalogue_are_those_of_fine_pictures() {
-    compare([240, 135], |entry| !is_measured(entry));
+    compare([240, 135], entries(|entry| !is_measured(entry)));
 }
 
 #[test]
 #[ignore = "minutes"]
 fn silhouettes_of_large_pictures_are_those_of_fine_ones() {
-    compare([960, 540], |_| true);
+    compare([960, 540], entries(|_| true));
 }
 
-/// Of the mesh in 64 cells.
-fn compare([width, height]: [u32; 2], is_asked: impl Fn(&Entry) -> bool) {
-    let mut wrong = Vec::new();
-    for entry in catalogue().iter().filter(|entry| is_asked(entry)) {
+#[test]
+fn silhouettes_of_the_examples_are_those_of_fine_pictures() {
+    compare([240, 135], workpieces::plain());
+}
+
+#[test]
+#[ignore = "minutes"]
+fn silhouettes_of_large_pictures_of_the_examples_are_those_of_fine_ones() {
+    compare([960, 540], workpieces::plain().into_iter().chain(workpieces::measured()));
+}
+
+/// Of the catalogue.
+fn entries(is_asked: impl Fn(&Entry) -> bool) -> impl Iterator<Item = (&'static str, Solid)> {
+    catalogue().iter().filter(move |entry| is_asked(entry)).filter_map(|entry| {
         let solid = match entry.example() {
             Part::Solid(solid) => solid,
             Part::Profile(profile) => profile.extrude(0.5),
-            _ => continue,
+            _ => return None,
         };
         let is_finite = solid.bounds().is_ok_and(|bounds| bounds.is_finite());
-        let solid = if is_finite { solid } else { solid & Solid::cuboid([4.0; 3]) };
+        Some((entry.name(), if is_finite { solid } else { solid & Solid::cuboid([4.0; 3]) }))
+    })
+}
+
+/// Of the mesh in 64 cells.
+fn compare([width, height]: [u32; 2], solids: impl IntoIterator<Item = (&'static str, Solid)>) {
+    let mut wrong = Vec::new();
+    for (name, solid) in solids {
         let scene = solid.scene().unwrap();
         let camera = scene.framing(View::ThreeQuarter, 16.0 / 9.0);
         let picture = |quality| scene.render(&camera, &settings(width, height, quality)).unwrap();
         let apart = apart(&picture(Quality::Fine), &picture(Quality::Draft));
         if apart > 0 {
-            wrong.push(format!("{}: {apart}", entry.name()));
+            wrong.push(format!("{name}: {apart}"));
         }
     }
     assert!(wrong.is_empty(), "pixels too far from the silhouette: {wrong:?}");

@@ -82,5 +82,6 @@ mod tight;
 mod tolerance;
 mod volume;
 mod within;
+mod workpieces;
 mod zbuffer;
 mod zoo;
