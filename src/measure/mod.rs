@@ -1,6 +1,7 @@
 //! What is measured of solids.
 
 mod area;
+mod calibrated;
 mod bracket;
 mod clearance;
 mod clip;
@@ -15,9 +16,12 @@ mod flat;
 mod gamma;
 mod integral;
 mod merged;
+mod meshed;
 mod moments;
+mod pieces;
 mod polytope;
 mod report;
+mod section;
 mod solid;
 mod thickness;
 mod thickness_report;

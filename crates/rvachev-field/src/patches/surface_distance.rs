@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::{Foot, Patches};
-use crate::{AnyField, Bounds, Chunk, Dual, Interval, ParamError, VALUE_LIMIT, Way, Zone, steep_slopes};
+use crate::{AnyField, Bounds, Chunk, Dual, Interval, Layer, ParamError, VALUE_LIMIT, Way, Zone, steep_slopes};
 use rvachev_num::symbol::Symbol;
 
 /// Nearer than this part of the surface's size, the direction to the foot is rounding, and the
@@ -183,7 +183,7 @@ impl SurfaceDistance {
     }
 
     /// A zone moved to 0 along the axis of a cylinder.
-    fn across(&self, zone: &Zone) -> Zone {
+    pub(super) fn across(&self, zone: &Zone) -> Zone {
         let Some(axis) = self.flat else { return *zone };
         let mut across = DVec3::ONE;
         across[axis] = 0.0;
@@ -307,6 +307,10 @@ impl AnyField for SurfaceDistance {
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         self.rising(zone, ways)
+    }
+
+    fn layers(&self, zone: &Zone, level: f64) -> Option<Vec<Layer>> {
+        self.level_layers(zone, level)
     }
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
