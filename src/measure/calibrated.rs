@@ -17,9 +17,9 @@
 //!
 //! over all sides. Sides beside what is all inside or outside are known, of others it is known [what
 //! they have inside](super::section) at least and at most. N may be any unit vector for the lower
-//! bound, as in a calibration (Harvey and Lawson, *Calibrated geometries*, 1982). Where the pieces
-//! of the surface in a cell have no direction in common, each has no more than its shadow, or the
-//! cell's faces if it is of a convex body.
+//! bound, as in a calibration (Harvey and Lawson, *Calibrated geometries*, 1982). At creases, where
+//! normals are turned much, each piece of the surface is [looked at by itself](super::section); the
+//! field is 0 there.
 
 use std::collections::{HashMap, HashSet};
 
@@ -27,7 +27,7 @@ use glam::DVec3;
 
 use super::integral::unfolded;
 use super::pieces::{Facing, pieces};
-use super::section::area_inside;
+use super::section::{area_inside, area_shown};
 use crate::eval::Narrowed;
 use crate::program::Program;
 use crate::space::{Block, Grid, surface_blocks};
@@ -45,6 +45,9 @@ const DEEPEST: u8 = 8;
 /// Cells begin so much before the box, as a part of their side, that hardly ever a face is in a
 /// side of one.
 const ASIDE: f64 = 0.061_803_4;
+
+/// Where what normals are turned leaves open is less than this part of the area, flows tell it.
+const FLAT: f64 = 0.02;
 
 /// Of what may be left open this much is left to cells that are not divided.
 const LEFT: f64 = 0.5;
@@ -93,27 +96,32 @@ impl Place {
 struct Cell {
     place: Place,
     program: Program,
+    /// What flows through the surface tells its area, if this is known.
     facing: Option<Facing>,
-    /// The area in it at most, if the pieces have no direction in common; else 0.
-    most: f64,
+    /// Else it is at least and at most this.
+    area: [f64; 2],
 }
 
 impl Cell {
     fn new(place: Place, program: Program, grid: &Grid) -> Cell {
         let bounds = place.bounds(grid);
         let program = unfolded(program, &bounds);
-        let pieces = pieces(&program, &bounds);
-        let facing = pieces.as_ref().and_then(|pieces| Facing::of(pieces));
-        let size = bounds.size();
-        let most = match (facing, pieces) {
-            (Some(_), _) => 0.0,
-            (None, Some(pieces)) => {
-                let open = pieces.iter().filter(|piece| piece.sign.is_none());
-                open.map(|piece| piece.most_area(size)).sum()
-            }
-            (None, None) => f64::INFINITY,
+        let Some(pieces) = pieces(&program, &bounds) else {
+            return Cell { place, program, facing: None, area: [0.0, f64::INFINITY] };
         };
-        Cell { place, program, facing, most }
+        let facing = Facing::of(&pieces);
+        // What little of it is turned does not pay.
+        let side = bounds.size().max_element();
+        let by_flow = facing.map_or(f64::INFINITY, |Facing { cosine, .. }| (1.0 / cosine - 1.0) * side * side);
+        if by_flow <= FLAT * side * side {
+            return Cell { place, program, facing, area: [0.0; 2] };
+        }
+        let area = area_shown(&program, &pieces, &bounds);
+        if facing.is_none() || area[1] - area[0] < by_flow {
+            Cell { place, program, facing: None, area }
+        } else {
+            Cell { place, program, facing, area: [0.0; 2] }
+        }
     }
 
     /// The fields of the lower bound and of the upper one.
@@ -152,7 +160,6 @@ pub(super) fn area(
         Ok(Cell::new(place, found.programs[block.program as usize].clone(), &grid))
     };
     let mut cells = jobs::try_in_order(found.blocks.len(), |n| cell(&found.blocks[n]))?;
-    let mut asked = cells.len();
     let (mut divided, mut sides) = (HashSet::new(), Sides::new());
     let mut begun = f64::NAN;
     loop {
@@ -163,12 +170,11 @@ pub(super) fn area(
             begun = open;
         }
         to_divide.report((begun / open).ln().max(0.0) / (begun / enough).ln().max(1.0));
-        let is_unknown = |cell: &Cell| cell.most.is_infinite() && cell.place.halvings >= DEEPEST;
-        if open <= enough || asked >= MOST || cells.iter().any(is_unknown) {
+        let is_unknown = |cell: &Cell| cell.area[1].is_infinite() && cell.place.halvings >= DEEPEST;
+        if open <= enough || cells.len() >= MOST || cells.iter().any(is_unknown) {
             return Ok(open.is_finite().then_some([sums.least, sums.most]));
         }
-        let chosen = chosen(&sums.open, LEFT * enough, (MOST - asked).div_ceil(8));
-        asked += 8 * chosen.len();
+        let chosen = chosen(&sums.open, LEFT * enough, (MOST - cells.len()).div_ceil(4));
         let eighths = |n: usize| {
             run.check()?;
             let Cell { place, program, .. } = &cells[chosen[n]];
@@ -305,10 +311,12 @@ fn sums(cells: &[Cell], divided: &HashSet<Place>, sides: &mut Sides, grid: &Grid
         }
     }
     for (n, cell) in cells.iter().enumerate() {
-        sums.most += cell.most;
+        let [least, most] = cell.area;
+        sums.least += least;
+        sums.most += most;
         sums.open[n] += match cell.facing {
             Some(Facing { cosine, .. }) => (1.0 / cosine - 1.0) * f64::max(through[n], 0.0),
-            None => cell.most,
+            None => most - least,
         };
     }
     sums.least = sums.least.clamp(0.0, sums.most);

@@ -99,6 +99,23 @@ pub(super) fn flat(program: &Program, cell: &Bounds) -> Flat {
     }
 }
 
+/// Thinner boxes are taken for so thick, as a part of their size.
+const THIN: f64 = 1e-3;
+
+/// The planes that a convex part with flat faces is above in a box, from its middle, and how far
+/// these may be off; nothing of others.
+pub(super) fn flat_faces(atom: &Program, cell: &Bounds) -> Option<(Vec<Plane>, f64)> {
+    let mut half = cell.half_extents();
+    half = half.max(DVec3::splat(THIN * half.max_element()));
+    let cell = Bounds::from_center(cell.center(), half);
+    if atom.bend_over(&Zone::of_bounds(&cell)) != Some(Bend::Concave) {
+        return None;
+    }
+    let part = part(atom, 0, &cell, FLAT).ok().filter(|part| part.is_exact)?;
+    let slack = Polytope::cuboid(half, far(&cell)).slack;
+    Some((part.planes, 4.0 * slack + 8.0 * ROUNDING * far(&cell)))
+}
+
 /// The largest coordinate in absolute value.
 fn far(cell: &Bounds) -> f64 {
     cell.min.abs().max(cell.max.abs()).max_element()

@@ -8,6 +8,7 @@
 
 use glam::DVec3;
 
+use super::cuts::flat_faces;
 use super::polytope::Plane;
 use crate::Bounds;
 use crate::eval::{Atom, Number};
@@ -57,7 +58,15 @@ pub(super) fn pieces(program: &Program, region: &Bounds) -> Option<Vec<Piece>> {
             Some(numbers) => {
                 let of = numbers.iter().map(|number| Piece::of_number(&atom, number, region));
                 // What is positive all over takes no part in the least.
-                all.extend(of.filter(|piece| piece.sign != Some(true)));
+                let own: Vec<Piece> = of.filter(|piece| piece.sign != Some(true)).collect();
+                let is_unknown = own.iter().any(|piece| piece.sign.is_none() && piece.facing.is_none());
+                let planes = if is_unknown { flat_faces(&atom.program, region) } else { None };
+                match planes {
+                    Some((planes, slack)) => {
+                        all.extend(planes.into_iter().map(|plane| Piece::flat(&atom, plane, slack)));
+                    }
+                    None => all.extend(own),
+                }
             }
             None => all.push(Piece::measured(&atom, region)),
         }
@@ -85,6 +94,12 @@ impl Piece {
             piece.facing = outward(atom, slope.normalize_or_zero(), least_cosine(slope, spread));
         }
         piece
+    }
+
+    /// A flat face, to within a distance.
+    fn flat(atom: &Atom, plane: Plane, slack: f64) -> Piece {
+        let (layer, facing) = (Some((plane, slack)), outward(atom, plane.normal(), 1.0));
+        Piece { node: atom.node, sign: None, layer, facing, is_convex: true }
     }
 
     /// What is searched for tells a layer, or nothing.
@@ -128,9 +143,7 @@ fn least_cosine(slope: DVec3, spread: DVec3) -> f64 {
 /// Outward normals where a number of a part is 0, by where it rises.
 fn outward(atom: &Atom, rise: DVec3, cosine: f64) -> Option<Facing> {
     let normal = if atom.is_complement? { rise } else { -rise };
-    // Slopes are rounded.
-    let cosine = (cosine - 1e-13).min(1.0 - 1e-15);
-    (cosine >= LEAST && normal.is_finite()).then_some(Facing { normal, cosine })
+    (cosine >= LEAST && normal.is_normalized()).then_some(Facing { normal, cosine: cosine - ROUNDING })
 }
 
 impl Facing {

@@ -34,6 +34,11 @@ impl Plane {
         (at.is_finite() && normal.is_finite()).then_some(Plane { normal, at })
     }
 
+    /// A unit vector to the side that is above.
+    pub(super) fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
     /// How far a point is above it.
     pub(super) fn height(&self, p: DVec3) -> f64 {
         self.normal.dot(p) - self.at

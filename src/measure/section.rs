@@ -1,23 +1,45 @@
-//! How much of a rectangle is inside a solid, at least and at most.
+//! How much of a rectangle is inside a solid, and how much surface there is in a box, at least and
+//! at most.
 //!
-//! The layers that the pieces of the surface lie in cut the rectangle into polygons. Beyond a layer
-//! its piece has one sign; what is within layers is open where the others do not tell it.
+//! ```text
+//!         |   |  layer        The layers that the pieces of the surface lie in cut a rectangle into polygons.
+//!    -----|---|---------      Beyond a layer its piece has one sign; what is within layers is open where the
+//!     in  | ? |  out          others do not tell it.
+//! ```
+//!
+//! A piece is surface where its sign makes the solid's. It is seen on the plane in the middle of
+//! its layer: its shadow there is as large as itself, but for how far its normals are turned. The
+//! layers of the others, and the sides of the box, are farther off there by what a point may be off
+//! the plane.
+
+use glam::DVec3;
 
 use super::pieces::{Piece, pieces};
-use super::polytope::Face;
+use super::polytope::{Face, Plane, Polytope};
 use crate::Bounds;
 use crate::eval::Narrowed;
 use crate::program::Program;
 
-/// A rectangle is cut into no more parts.
+/// A polygon is cut into no more parts.
 const PARTS: usize = 512;
+
+/// A piece, and its layer.
+#[derive(Clone, Copy)]
+struct Shown {
+    number: usize,
+    plane: Plane,
+    half: f64,
+}
 
 struct Section<'a> {
     program: &'a Program,
     pieces: &'a [Piece],
+    /// The piece in whose plane the polygon lies, if it is asked where that is surface.
+    shown: Option<Shown>,
     /// Whether the first pieces are positive.
     signs: Vec<Option<bool>>,
-    inside: f64,
+    /// The area where what is asked is so, and where it is not told.
+    sure: f64,
     open: f64,
     left: usize,
 }
@@ -37,13 +59,44 @@ pub(super) fn area_inside(program: &Program, rectangle: &Bounds, axis: usize) ->
         }
     };
     let Some(pieces) = pieces(program, rectangle) else { return [0.0, area] };
-    let (signs, left) = (vec![None; pieces.len()], PARTS);
-    let mut section = Section { program, pieces: &pieces, signs, inside: 0.0, open: 0.0, left };
-    section.divide(&whole, 0);
-    [section.inside.min(area), (section.inside + section.open).min(area)]
+    let section = Section::of(program, &pieces, None, &whole);
+    [section.sure.min(area), (section.sure + section.open).min(area)]
 }
 
-impl Section<'_> {
+/// The area of the surface in a box, of which these are the pieces, at least and at most.
+pub(super) fn area_shown(program: &Program, pieces: &[Piece], cell: &Bounds) -> [f64; 2] {
+    let mut all = [0.0; 2];
+    for (number, piece) in pieces.iter().enumerate().filter(|(_, piece)| piece.sign.is_none()) {
+        let most = piece.most_area(cell.size());
+        let (Some((plane, half)), Some(facing)) = (piece.layer, piece.facing) else {
+            all[1] += most;
+            continue;
+        };
+        let far = cell.min.abs().max(cell.max.abs()).max_element();
+        let off = half * plane.normal().abs();
+        let shown = Some(Shown { number, plane, half });
+        let section = |half: DVec3| {
+            if half.min_element() <= 0.0 {
+                return [0.0; 2];
+            }
+            let polygon = Polytope::cuboid(half, far).section(&plane);
+            let Section { sure, open, .. } = Section::of(program, pieces, shown, &polygon);
+            [sure, sure + open]
+        };
+        all[0] += section(cell.half_extents() - off)[0];
+        all[1] += (section(cell.half_extents() + off)[1] / facing.cosine).min(most);
+    }
+    [all[0].min(all[1]), all[1]]
+}
+
+impl<'a> Section<'a> {
+    fn of(program: &'a Program, pieces: &'a [Piece], shown: Option<Shown>, polygon: &Face) -> Section<'a> {
+        let (signs, left) = (vec![None; pieces.len()], PARTS);
+        let mut section = Section { program, pieces, shown, signs, sure: 0.0, open: 0.0, left };
+        section.divide(polygon, 0);
+        section
+    }
+
     fn is_inside(&self) -> Option<bool> {
         self.program.is_inside_by(|node| {
             let own = self.pieces.iter().zip(&self.signs).filter(|(piece, _)| piece.node == node);
@@ -56,19 +109,34 @@ impl Section<'_> {
         })
     }
 
-    /// Adds what of a polygon is inside, given the signs of the first pieces.
+    /// Whether it is inside, or whether the piece is surface, if what is known tells it.
+    fn is_so(&mut self) -> Option<bool> {
+        let Some(Shown { number, .. }) = self.shown else { return self.is_inside() };
+        let [above, below] = [true, false].map(|sign| {
+            self.signs[number] = Some(sign);
+            self.is_inside()
+        });
+        self.signs[number] = None;
+        Some(above? != below?)
+    }
+
+    /// Adds what of a polygon is so, given the signs of the first pieces.
     fn divide(&mut self, polygon: &Face, told: usize) {
         if polygon.is_empty() {
             return;
         }
         self.left = self.left.saturating_sub(1);
-        match (self.is_inside(), self.pieces.get(told).filter(|_| self.left > 0)) {
-            (Some(true), _) => self.inside += polygon.area(),
+        match (self.is_so(), self.pieces.get(told).filter(|_| self.left > 0)) {
+            (Some(true), _) => self.sure += polygon.area(),
             (Some(false), _) => {}
             (None, None) => self.open += polygon.area(),
             (None, Some(piece)) => {
                 let (sign, layer) = (piece.sign, piece.layer);
-                if let Some((plane, half)) = layer.filter(|_| sign.is_none()) {
+                let is_shown = self.shown.is_some_and(|shown| shown.number == told);
+                if let Some((plane, half)) = layer.filter(|_| sign.is_none() && !is_shown) {
+                    // A point that is off the plane of the one that is shown is as far off this one.
+                    let off = |shown: Shown| shown.half * shown.plane.normal().dot(plane.normal()).abs();
+                    let half = half + self.shown.map_or(0.0, off);
                     let [over, under] = [plane.raised(half), plane.turned().raised(half)];
                     self.told(&polygon.above(&over), told, Some(true));
                     self.told(&polygon.above(&under), told, Some(false));

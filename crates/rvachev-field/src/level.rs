@@ -81,6 +81,11 @@ pub(crate) fn layers_across(field: &dyn AnyField, zone: &Zone, level: f64, acros
     }
     let slack = zone.slack.length();
     let (aside, most) = (aside + slack, most + slack);
+    // Beyond the zone a leaf that was narrowed may tell another sign.
+    let value = |p: DVec3| {
+        let found = field.value(p.to_array());
+        if level == 0.0 { found } else { found.abs().copysign(level) }
+    };
     // How far from the foot the level may be on a side, and the balls that tell it: how far their
     // middles are, and how large they are.
     let reach = |sign: f64| {
@@ -90,7 +95,7 @@ pub(crate) fn layers_across(field: &dyn AnyField, zone: &Zone, level: f64, acros
         let mut balls = Vec::with_capacity(BALLS);
         for _ in 0..BALLS {
             let centre = foot + sign * by * normal;
-            let ball = sign * (field.value(centre.to_array()) - level) - rounding - ROUNDING * by;
+            let ball = sign * (value(centre) - level) - rounding - ROUNDING * by;
             if ball <= aside {
                 break;
             }

@@ -11,7 +11,8 @@
 //!     =================
 //! ```
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use rvachev_num::Interval;
 
 use super::face::double;
 use super::hierarchy::{Node, PARENT};
@@ -44,19 +45,57 @@ impl SurfaceDistance {
         let along = plane.map(|(normal, _)| if level < 0.0 { -normal } else { normal });
         let mut layers = layers_across(self, zone, level, Across { axes, along })?;
         let rounding = self.patches.rounding();
-        for Layer { low, high, .. } in &mut layers {
-            (*low, *high) = (*low - rounding, *high + rounding);
+        for layer in &mut layers {
+            (layer.low, layer.high) = (layer.low - rounding, layer.high + rounding);
             if let Some((_, at)) = plane {
                 if level < 0.0 {
-                    *high = high.min(level - at + rounding);
+                    layer.high = layer.high.min(level - at + rounding);
                 } else {
-                    *low = low.max(level + at - rounding);
+                    layer.low = layer.low.max(level + at - rounding);
                 }
+            } else {
+                self.thin(layer, zone, level);
             }
         }
         Some(layers)
     }
+
+    /// Makes a layer thinner on the side of the surface.
+    ///
+    /// ```text
+    ///     -----x-----  level          What is nearer to a plane beyond the surface than the level is to the
+    ///     ___________  surface        surface meets the surface on the way there.
+    ///     ----------- plane
+    /// ```
+    fn thin(&self, layer: &mut Layer, zone: &Zone, level: f64) {
+        let Layer { normal, low, high, .. } = *layer;
+        // Downwards to the surface if the level is inside.
+        let sign = level.signum();
+        let axes = [0, 1, 2].map(|k| zone.axes.col(k) - normal.dot(zone.axes.col(k)) * normal);
+        let middle = normal.dot(zone.centre);
+        let reach = (0..3).map(|k| normal.dot(zone.axes.col(k)).abs()).sum::<f64>() + zone.slack.length();
+        for part in THINNER {
+            let thickness = part * (high - low);
+            let at = if sign > 0.0 { high - thickness } else { low + thickness };
+            let plane = at - sign * (level.abs() - self.error - self.patches.rounding());
+            // All of the zone is on this side of it.
+            if sign * (middle - plane) <= reach {
+                return;
+            }
+            let mut beyond = Zone::of_frame(zone.centre + (plane - middle) * normal, DMat3::from_cols(axes[0], axes[1], axes[2]));
+            if zone.slack != DVec3::ZERO {
+                beyond = beyond.inflated(zone.slack.max_element());
+            }
+            if (self.whole_sign.range(&beyond) * Interval::point(sign)).hi() < 0.0 {
+                if sign > 0.0 { layer.low = at } else { layer.high = at }
+                return;
+            }
+        }
+    }
 }
+
+/// Layers become so thin, as parts of what they are, if they do.
+const THINNER: [f64; 4] = [1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0, 1.0 / 2.0];
 
 impl Patches {
     /// The plane of the flat patch that is nearest to the middle of a zone, if all of the zone is

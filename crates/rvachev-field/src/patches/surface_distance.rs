@@ -29,7 +29,9 @@ const UPRIGHT: f64 = 0.99;
 pub struct SurfaceDistance {
     pub(super) patches: Arc<Patches>,
     pub(super) sign: Arc<dyn AnyField>,
-    error: f64,
+    /// The same before it was narrowed.
+    pub(super) whole_sign: Arc<dyn AnyField>,
+    pub(super) error: f64,
     pub(super) flat: Option<usize>,
     bounds: Bounds,
     /// The sign, where it is the same all over a zone.
@@ -49,7 +51,8 @@ impl SurfaceDistance {
         flat: Option<usize>,
         bounds: Bounds,
     ) -> SurfaceDistance {
-        SurfaceDistance { patches, sign, error, flat: flat.filter(|axis| *axis < 3), bounds, side: None }
+        let (whole_sign, flat) = (sign.clone(), flat.filter(|axis| *axis < 3));
+        SurfaceDistance { patches, sign, whole_sign, error, flat, bounds, side: None }
     }
 
     /// The surface.
