@@ -82,7 +82,8 @@ impl Program {
             if faces.iter().any(|face| face.leaf == leaf) {
                 continue;
             }
-            let of = |(p, frames): &([Dual<Interval>; 3], Vec<[Dual<Interval>; 3]>)| self.leaf_faces(leaf, (*p, frames));
+            let of =
+                |(p, frames): &([Dual<Interval>; 3], Vec<[Dual<Interval>; 3]>)| self.leaf_faces(leaf, (*p, frames));
             for (middle, all) in std::iter::zip(of(&middle), of(&all)) {
                 let slopes = all.d.map(Interval::magnitude);
                 let steepest = slopes.into_iter().fold(0.0, f64::max);

@@ -1,8 +1,8 @@
 //! What is measured of solids.
 
 mod area;
-mod calibrated;
 mod bracket;
+mod calibrated;
 mod clearance;
 mod clip;
 mod closed;

@@ -100,12 +100,13 @@ impl<'a> Section<'a> {
     fn is_inside(&self) -> Option<bool> {
         self.program.is_inside_by(|node| {
             let own = self.pieces.iter().zip(&self.signs).filter(|(piece, _)| piece.node == node);
+            let mut signs = own.map(|(_, sign)| *sign);
             // The least of numbers is positive where all are.
-            own.fold(Some(true), |all, (_, sign)| match (all, *sign) {
-                (Some(false), _) | (_, Some(false)) => Some(false),
-                (Some(true), Some(true)) => Some(true),
-                _ => None,
-            })
+            if signs.clone().any(|sign| sign == Some(false)) {
+                Some(false)
+            } else {
+                signs.all(|sign| sign == Some(true)).then_some(true)
+            }
         })
     }
 

@@ -4,8 +4,8 @@
 use glam::{DMat3, DVec3};
 use rvachev::catalogue::{Group, Part};
 use rvachev::{
-    Blend, CancelToken, CellSize, GeneralisedSuperquadric, MeasureReport, Mesh, MeshSettings, MeshSolid, Profile, Progress,
-    RFunction, Run, Solid, catalogue, deg, rad,
+    Blend, CancelToken, CellSize, GeneralisedSuperquadric, MeasureReport, Mesh, MeshSettings, MeshSolid, Profile,
+    Progress, RFunction, Run, Solid, catalogue, deg, rad,
 };
 
 use crate::support::Random;

@@ -82,12 +82,17 @@ impl SurfaceDistance {
             if sign * (middle - plane) <= reach {
                 return;
             }
-            let mut beyond = Zone::of_frame(zone.centre + (plane - middle) * normal, DMat3::from_cols(axes[0], axes[1], axes[2]));
+            let mut beyond =
+                Zone::of_frame(zone.centre + (plane - middle) * normal, DMat3::from_cols(axes[0], axes[1], axes[2]));
             if zone.slack != DVec3::ZERO {
                 beyond = beyond.inflated(zone.slack.max_element());
             }
             if (self.whole_sign.range(&beyond) * Interval::point(sign)).hi() < 0.0 {
-                if sign > 0.0 { layer.low = at } else { layer.high = at }
+                if sign > 0.0 {
+                    layer.low = at
+                } else {
+                    layer.high = at
+                }
                 return;
             }
         }
