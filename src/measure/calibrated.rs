@@ -171,10 +171,11 @@ pub(super) fn area(
         }
         to_divide.report((begun / open).ln().max(0.0) / (begun / enough).ln().max(1.0));
         let is_unknown = |cell: &Cell| cell.area[1].is_infinite() && cell.place.halvings >= DEEPEST;
-        if open <= enough || cells.len() >= MOST || cells.iter().any(is_unknown) {
+        if open.is_finite() && open <= enough || cells.len() >= MOST || cells.iter().any(is_unknown) {
             return Ok(open.is_finite().then_some([sums.least, sums.most]));
         }
-        let chosen = chosen(&sums.open, LEFT * enough, (MOST - cells.len()).div_ceil(4));
+        // While some are unknown, these are divided, and no others.
+        let chosen = chosen(&sums.open, (LEFT * enough).min(f64::MAX), (MOST - cells.len()).div_ceil(4));
         let eighths = |n: usize| {
             run.check()?;
             let Cell { place, program, .. } = &cells[chosen[n]];
