@@ -1,6 +1,7 @@
 //! What it takes to measure solids: `cargo bench --bench measures` prints the milliseconds of the
 //! processor, of all threads, that volume, moments and area take to a thousandth, how far the
-//! volume may be off then, as a part of it, and how far it is off where it is known.
+//! volume may be off then, as a part of it, and how far it is off where it is known, and how far
+//! the area may be off, if that is certain.
 //!
 //! Words after `--` choose rows: those whose names have one of them.
 
@@ -8,14 +9,14 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 
 use cpu_time::ProcessTime;
-use rvachev::{Profile, RFunction, Solid, deg};
+use rvachev::{Blend, Profile, RFunction, Solid, deg};
 
 /// As a part of the volume.
 const TOLERANCE: f64 = 1e-3;
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
-    println!("{:>24} {:>8} {:>10} {:>10}", "", "ms", "error", "off");
+    println!("{:>24} {:>8} {:>10} {:>10} {:>10}", "", "ms", "error", "off", "area");
     for (name, solid, volume) in rows() {
         if !words.is_empty() && !words.iter().any(|word| name.contains(word.as_str())) {
             continue;
@@ -24,8 +25,22 @@ fn main() {
         let report = black_box(solid.measure(TOLERANCE).expect("it can be measured"));
         let took = 1e3 * start.elapsed().as_secs_f64();
         let off = volume.map_or(f64::NAN, |volume| (report.volume / volume - 1.0).abs());
-        println!("{name:>24} {took:>8.1} {:>10.1e} {off:>10.1e}", report.volume_error / report.volume);
+        let error = report.volume_error / report.volume;
+        let of_area = if report.is_area_certain { report.area_error / report.area } else { f64::NAN };
+        println!("{name:>24} {took:>8.1} {error:>10.1e} {off:>10.1e} {of_area:>10.1e}");
     }
+}
+
+/// Plate, wall, rib and counterbored holes.
+fn bracket() -> Solid {
+    let plate = Solid::cuboid([60.0, 40.0, 6.0]).translate([0.0, 0.0, 3.0]);
+    let wall = Solid::cuboid([6.0, 40.0, 40.0]).translate([-27.0, 0.0, 20.0]);
+    let rib = Solid::wedge([30.0, 5.0, 30.0]).translate([-9.0, 0.0, 21.0]);
+    let hole = Solid::cylinder(3.0, 30.0) | Solid::cylinder(6.0, 10.0).translate([0.0, 0.0, 5.0]);
+    let upright = |y: f64| hole.translate([16.0, y, 4.0]);
+    let across = |y: f64| hole.rotate_y(deg(90.0)).translate([-26.0, y, 29.0]);
+    let body = plate | wall | rib;
+    body.difference_all([upright(-12.0), upright(12.0), across(-12.0), across(12.0)], RFunction::MIN_MAX)
 }
 
 /// Solids, and their volumes where these are known.
@@ -51,6 +66,13 @@ fn rows() -> Vec<(&'static str, Solid, Option<f64>)> {
     let of_drilled = 7200.0 - 96.0 * PI;
     let solid_prism = Solid::prism(6, 5.0, 8.0) - Solid::prism(6, 3.0, 10.0);
     let of_prism = 8.0 * 3.0 * 0.75f64.sqrt() * (25.0 - 9.0);
+    let base = Solid::cuboid([60.0, 40.0, 4.0]);
+    let post = Solid::cylinder(6.0, 30.0).translate([0.0, 0.0, 15.0]);
+    let of_post = 60.0 * 40.0 * 4.0 + PI * 36.0 * 28.0;
+    // What a ball of 3 leaves out between a plane and a pillar of 6: Pappus.
+    let of_fillet = 2.0 * PI * (9.0 * (6.0 + 1.5) - PI * 2.25 * (9.0 - 4.0 / PI));
+    let egg = Solid::superellipsoid([30.0, 20.0, 40.0], 0.3, 0.4);
+    let egg_in_egg = &egg - Solid::superellipsoid([29.0, 19.0, 39.0], 0.3, 0.4);
     let [of_comb, of_copies] = [20.0, 12.0].map(|count| count * (2.0 - gap) * 24.0 * 1.5);
     let of_slots = 11.0 * gap * 20.0;
     vec![
@@ -69,6 +91,15 @@ fn rows() -> Vec<(&'static str, Solid, Option<f64>)> {
         ("rings, turned", turned(&ring), Some(of_ring)),
         ("drilled plate", drilled.clone(), Some(of_drilled)),
         ("drilled plate, turned", turned(&drilled), Some(of_drilled)),
-        ("filleted", drilled.rounded(1.0), None),
+        ("plate, rounded", drilled.rounded(1.0), None),
+        ("post", &base | &post, Some(of_post)),
+        ("post, filleted", base.union_with(&post, Blend::Fillet { radius: 3.0 }), Some(of_post + of_fillet)),
+        ("bracket", bracket(), None),
+        ("bracket, rounded", bracket().rounded(0.8), None),
+        ("bracket, shell", bracket().shell(1.0), None),
+        ("ball and ball", Solid::sphere(1.0) | Solid::sphere(0.8).translate([1.0, 0.0, 0.0]), None),
+        ("torus less ball", Solid::torus(1.0, 0.4) - Solid::sphere(0.5).translate([1.0, 0.0, 0.0]), None),
+        ("egg in egg", egg_in_egg, None),
+        ("egg, shell", egg.shell(1.0), None),
     ]
 }

@@ -42,7 +42,7 @@
 //! | measured | of | by | error |
 //! |---|---|---|---|
 //! | volume, centroid, inertia | a solid | [`Solid::measure`] | a bound that is certain |
-//! | area | a solid | [`Solid::measure`] | of flat faces rounding, of others an estimate |
+//! | area | a solid | [`Solid::measure`] | of flat faces rounding, of others a bound, or an estimate: the report tells |
 //! | the same, genus, shells, faults | a mesh | [`Mesh::check`] | those of its triangles, by rounding |
 //! | connected components, by size | a mesh | [`Mesh::components`], [`keep_components`](Mesh::keep_components) | none |
 //! | openings | a mesh | [`Mesh::open_edges`] | none |

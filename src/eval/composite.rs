@@ -10,7 +10,7 @@ use super::list::List;
 use super::{Evaluator, Gradients, Program, Tape};
 use crate::{Bounds, Dual, Interval, Jet, ParamError};
 use rvachev_field::kernel::{CHUNK, distinct, repeat};
-use rvachev_field::{AnyField, Chunk, Placement, Way, Zone};
+use rvachev_field::{AnyField, Chunk, Layer, Placement, Way, Zone, level_layers};
 use rvachev_num::symbol::Symbol;
 
 #[derive(Debug)]
@@ -117,6 +117,11 @@ impl AnyField for Composite {
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         self.program.rises(zone, ways)
+    }
+
+    fn layers(&self, zone: &Zone, level: f64) -> Option<Vec<Layer>> {
+        let by_leaf = self.program.layers(zone, level);
+        by_leaf.or_else(|| self.is_distance.then(|| level_layers(self, zone, level)).flatten())
     }
 
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {

@@ -30,7 +30,7 @@ use super::few::{Few, Lane};
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::VALUE_LIMIT;
 use rvachev_field::kernel::{distinct, repeat};
-use rvachev_field::{AnyField, Chunk, Way, Zone, bits, steep_slopes};
+use rvachev_field::{AnyField, Chunk, Layer, Way, Zone, bits, steep_slopes};
 use rvachev_num::symbol::Symbol;
 
 /// D counts up to this part of the radius.
@@ -321,6 +321,16 @@ impl AnyField for Fill {
         let by_sides = near.map(|side| side.field.rises(zone, &turned(-side.sign)));
         let by_ball = self.ball.field.rises(zone, &turned(self.ball.sign));
         by_sides.fold(by_ball & self.off_hull(zone, ways), |all, own| all & own)
+    }
+
+    /// Where it does not fade away from operands, its surface is where the ball is as far as its
+    /// radius.
+    fn layers(&self, zone: &Zone, level: f64) -> Option<Vec<Layer>> {
+        let height = self.margin + level;
+        let is_ball = self.sides.is_empty() && height < MOST * self.radius && self.box_depth(zone).lo() > level;
+        let sign = self.ball.sign;
+        let found = is_ball.then(|| self.ball.field.layers(zone, sign * (self.radius + height))).flatten()?;
+        Some(if sign < 0.0 { found.into_iter().map(Layer::turned).collect() } else { found })
     }
 
     fn steepest(&self, _zone: &Zone) -> f64 {

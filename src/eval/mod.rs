@@ -34,6 +34,7 @@ mod flatten;
 mod flush;
 mod hierarchy;
 mod joint;
+mod layers;
 mod list;
 mod moved_in;
 mod narrow;
@@ -77,6 +78,7 @@ pub use tape::{Evaluator, Gradients, Tape, UnequalSlices};
 pub(crate) use rvachev_field::BOXES as BOXES_AT_ONCE;
 
 pub(crate) use around::{AROUND, BESIDE, ROUNDING};
+pub(crate) use atoms::{Atom, Number};
 pub(crate) use bend::Bend;
 pub(crate) use bracket::Bracket;
 pub(crate) use bytes::Counted;

@@ -57,6 +57,18 @@ impl Program {
         sides.all(|side| side == first)
     }
 
+    /// Ranges over a point or a region of numbers of which the least has the sign of a leaf's value,
+    /// given the world's point and those of the frames.
+    pub(super) fn leaf_faces(
+        &self,
+        leaf: u32,
+        (world, frames): ([Dual<Interval>; 3], &[[Dual<Interval>; 3]]),
+    ) -> Vec<Dual<Interval>> {
+        let Instance { field, placement, frame, .. } = self.instance(leaf);
+        let p = self.in_frame(frames, *frame, world);
+        if placement.shift != 0.0 { vec![self.leaf(leaf, p)] } else { field.faces(placement.apply(p)) }
+    }
+
     /// The faces of all leaves that may have either sign in a region; none if these are many.
     fn faces(&self, region: &Bounds) -> Option<Vec<Face>> {
         let (centre, size, scale) = (region.center(), region.size(), scale(region));
@@ -70,11 +82,8 @@ impl Program {
             if faces.iter().any(|face| face.leaf == leaf) {
                 continue;
             }
-            let of = |(p, frames): &([Dual<Interval>; 3], Vec<[Dual<Interval>; 3]>)| {
-                let p = self.in_frame(frames, self.instance(leaf).frame, *p);
-                let Instance { field, placement, .. } = self.instance(leaf);
-                if placement.shift != 0.0 { vec![self.leaf(leaf, p)] } else { field.faces(placement.apply(p)) }
-            };
+            let of =
+                |(p, frames): &([Dual<Interval>; 3], Vec<[Dual<Interval>; 3]>)| self.leaf_faces(leaf, (*p, frames));
             for (middle, all) in std::iter::zip(of(&middle), of(&all)) {
                 let slopes = all.d.map(Interval::magnitude);
                 let steepest = slopes.into_iter().fold(0.0, f64::max);

@@ -1,34 +1,29 @@
-//! The area of a solid, by meshes of halved cells.
+//! The area of a solid: within bounds, or as meshes tell it.
 
+use super::{calibrated, meshed};
 use crate::error::MeshingError;
-use crate::{CellSize, MeshSettings, Run, Solid};
+use crate::program::Program;
+use crate::{Run, Solid};
 
-/// Cells along the longest side of the first mesh and of the last.
-const CELLS: [u32; 2] = [32, 256];
+/// An area, how far it may be off, and whether that is certain.
+pub(super) struct Area {
+    pub(super) area: f64,
+    pub(super) error: f64,
+    pub(super) is_certain: bool,
+}
 
-/// The area, and an estimate of how far it may be off; `volume` is the solid's.
-///
-/// Areas of meshes with sharp features are off by the square of the side of a cell: of a halving
-/// three quarters of what the area was off are gone, so that what has changed is more than what is
-/// left. Where cells may show a part only, as of walls that are thinner, they are halved as often
-/// as they may be; of a solid that they do not show at all nothing is known.
-pub(super) fn area(solid: &Solid, volume: f64, tolerance: f64, run: &Run) -> Result<[f64; 2], MeshingError> {
-    // Far from the origin single precision does not resolve the cells.
-    let solid = &solid.centered();
-    let [first, last] = CELLS;
-    let mut cells = first;
-    let mut before = f64::INFINITY;
-    loop {
-        let run = Run { progress: None, ..run.clone() };
-        let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
-        let mesh = solid.mesh_with(&settings, &run)?;
-        let area = mesh.area();
-        let by_volume = if volume > 0.0 { area * (mesh.volume() / volume - 1.0).abs() } else { 0.0 };
-        let error = (area - before).abs().max(by_volume);
-        if cells >= last || error <= tolerance * area && mesh.possibly_lost() == 0 {
-            let is_shown = area > 0.0 || volume <= 0.0;
-            return Ok([area, if is_shown { error } else { f64::INFINITY }]);
-        }
-        (before, cells) = (area, 2 * cells);
+/// The area of a solid to a part of it, as far as that can be told; `volume` is the solid's.
+pub(super) fn area(
+    solid: &Solid,
+    program: &Program,
+    volume: f64,
+    tolerance: f64,
+    run: &Run,
+) -> Result<Area, MeshingError> {
+    let [to_divide, to_mesh] = run.stages([0.5, 0.5]);
+    if let Some([least, most]) = calibrated::area(program, &solid.finite_bounds()?, tolerance, &to_divide)? {
+        return Ok(Area { area: least.midpoint(most), error: 0.5 * (most - least), is_certain: true });
     }
+    let [area, error] = meshed::area(solid, volume, tolerance, &to_mesh)?;
+    Ok(Area { area, error, is_certain: false })
 }

@@ -8,10 +8,11 @@
 //!                               δ/(δ + m).
 //! ```
 //!
-//! Of other values the slopes tell a plane, and of meshes layers are told that hold their
-//! triangles. The planes of all parts of a program divide the cell into bodies that are inside or
-//! outside by what minima and maxima make of the parts; what is open of the parts adds up. Faces
-//! between such bodies are the surface where one is inside and one outside.
+//! Of other values the slopes tell a plane. Of meshes, and of what is measured, layers are told
+//! that hold the surface. The planes of all parts of a program divide the cell into bodies that are
+//! inside or outside by what minima and maxima make of the parts; what is open of the parts adds up,
+//! and what is within layers is open where the other parts do not tell it. Faces between such
+//! bodies are the surface where one is inside and one outside.
 
 use glam::DVec3;
 
@@ -52,7 +53,7 @@ struct Part {
 }
 
 /// What is beyond layers that hold all of a surface is inside or outside wherever it is cut off by
-/// them: a point tells it.
+/// them: a point tells it. Within them nothing is told.
 struct Layers {
     atom: Program,
     centre: DVec3,
@@ -63,11 +64,12 @@ struct Layers {
 /// What a cell has of a program, if planes tell it.
 pub(super) fn held(program: &Program, cell: &Bounds) -> Option<Held> {
     let parts = parts(program, cell, ROUND).ok()?;
-    let Bodies { moments, open, .. } = Bodies::of(program, &parts, cell, false)?;
-    let open = open + parts.iter().map(|part| part.open).sum::<f64>();
+    let Bodies { moments, open: [less, more], .. } = Bodies::of(program, &parts, cell, false)?;
+    let open = parts.iter().map(|part| part.open).sum::<f64>();
     let (moments, whole) = (moments.moved(cell.center()), cell.size().element_product());
     // Rounding may lead beyond the cell.
-    let [least, most] = [moments.volume - open, moments.volume + open].map(|volume| volume.clamp(0.0, whole));
+    let [least, most] =
+        [moments.volume - less - open, moments.volume + more + open].map(|volume| volume.clamp(0.0, whole));
     Some(Held { least: least.min(moments.volume), most: most.max(moments.volume), moments })
 }
 
@@ -97,6 +99,23 @@ pub(super) fn flat(program: &Program, cell: &Bounds) -> Flat {
     }
 }
 
+/// Thinner boxes are taken for so thick, as a part of their size.
+const THIN: f64 = 1e-3;
+
+/// The planes that a convex part with flat faces is above in a box, from its middle, and how far
+/// these may be off; nothing of others.
+pub(super) fn flat_faces(atom: &Program, cell: &Bounds) -> Option<(Vec<Plane>, f64)> {
+    let mut half = cell.half_extents();
+    half = half.max(DVec3::splat(THIN * half.max_element()));
+    let cell = Bounds::from_center(cell.center(), half);
+    if atom.bend_over(&Zone::of_bounds(&cell)) != Some(Bend::Concave) {
+        return None;
+    }
+    let part = part(atom, 0, &cell, FLAT).ok().filter(|part| part.is_exact)?;
+    let slack = Polytope::cuboid(half, far(&cell)).slack;
+    Some((part.planes, 4.0 * slack + 8.0 * ROUNDING * far(&cell)))
+}
+
 /// The largest coordinate in absolute value.
 fn far(cell: &Bounds) -> f64 {
     cell.min.abs().max(cell.max.abs()).max_element()
@@ -108,8 +127,9 @@ struct Bodies<'a> {
     /// Whether the body is inside of the first parts.
     signs: Vec<Option<bool>>,
     moments: Moments,
-    /// Of bodies that are within layers.
-    open: f64,
+    /// Of bodies within layers that may be inside or outside: those that count as inside, and those
+    /// that do not.
+    open: [f64; 2],
     /// Of the faces that have the inside on one side, if that is asked for.
     area: f64,
     asks_area: bool,
@@ -125,7 +145,7 @@ impl<'a> Bodies<'a> {
     fn of(program: &'a Program, parts: &'a [Part], cell: &Bounds, asks_area: bool) -> Option<Bodies<'a>> {
         let whole = Polytope::cuboid(cell.half_extents(), far(cell));
         let (signs, moments, slack) = (vec![None; parts.len()], Moments::default(), whole.slack);
-        let (open, area, has_side, left) = (0.0, 0.0, false, BODIES);
+        let (open, area, has_side, left) = ([0.0; 2], 0.0, false, BODIES);
         let mut all = Bodies { program, parts, signs, moments, open, area, asks_area, has_side, left, slack };
         all.divide(&whole, 0)?;
         Some(all)
@@ -151,7 +171,7 @@ impl<'a> Bodies<'a> {
             return Some(());
         }
         let parts = self.parts;
-        let Part { planes, layers, .. } = parts.get(told)?;
+        let Some(Part { planes, layers, .. }) = parts.get(told) else { return self.leave(body) };
         if let Some(layers) = layers {
             return self.among(body, told, (planes, layers));
         }
@@ -175,24 +195,41 @@ impl<'a> Bodies<'a> {
         Some(())
     }
 
-    /// The same of a body that planes in layers divide.
+    /// The same of a body that layers about planes divide.
     fn among(&mut self, body: &Polytope, told: usize, (planes, layers): (&[Plane], &Layers)) -> Option<()> {
-        if let [plane, rest @ ..] = planes {
-            self.among(&body.above(plane), told, (rest, layers))?;
-            return self.among(&body.above(&plane.turned()), told, (rest, layers));
-        }
-        let Moments { volume, first, .. } = body.moments();
-        if body.is_empty() || volume <= 0.0 {
+        if body.is_empty() {
             return Some(());
         }
-        let middle = first / volume;
-        let mut all = self.parts[told].planes.iter().zip(&layers.halves);
-        if all.any(|(plane, half)| plane.height(middle).abs() <= *half) {
-            self.open += volume;
+        if let [plane, rest @ ..] = planes {
+            let half = layers.halves[layers.halves.len() - planes.len()];
+            let [over, under] = [plane.raised(half), plane.turned().raised(half)];
+            self.among(&body.above(&over), told, (rest, layers))?;
+            self.among(&body.above(&under), told, (rest, layers))?;
+            return self.divide(&body.above(&over.turned()).above(&under.turned()), told + 1);
         }
-        self.signs[told] = Some(layers.atom.value(layers.centre + middle) > 0.0);
+        let Moments { volume, first, .. } = body.moments();
+        if volume <= 0.0 {
+            return Some(());
+        }
+        self.signs[told] = Some(layers.atom.value(layers.centre + first / volume) > 0.0);
         self.divide(body, told + 1)?;
         self.signs[told] = None;
+        Some(())
+    }
+
+    /// Leaves a body open that all parts do not tell: it counts as its middle does. Without layers
+    /// there is none.
+    fn leave(&mut self, body: &Polytope) -> Option<()> {
+        let centre = self.parts.iter().find_map(|part| part.layers.as_ref()).map(|layers| layers.centre)?;
+        let moments = body.moments();
+        if moments.volume <= 0.0 {
+            return Some(());
+        }
+        let is_inside = self.program.value(centre + moments.first / moments.volume) > 0.0;
+        self.open[usize::from(!is_inside)] += moments.volume;
+        if is_inside {
+            self.moments.add(&moments);
+        }
         Some(())
     }
 
@@ -240,7 +277,7 @@ impl<'a> Bodies<'a> {
 /// The planes of all parts of a program, or why they are not told.
 fn parts(program: &Program, cell: &Bounds, cuts: usize) -> Result<Vec<Part>, Flat> {
     let atoms = program.atoms(PARTS).ok_or(Flat::Unknown)?;
-    atoms.iter().map(|(node, atom)| part(atom, *node, cell, cuts)).collect()
+    atoms.iter().map(|atom| part(&atom.program, atom.node, cell, cuts)).collect()
 }
 
 fn part(atom: &Program, node: usize, cell: &Bounds, cuts: usize) -> Result<Part, Flat> {
@@ -252,8 +289,8 @@ fn part(atom: &Program, node: usize, cell: &Bounds, cuts: usize) -> Result<Part,
         if cuts == FLAT {
             return Err(Flat::Other);
         }
-        let (planes, open, layers) = if let Some(found) = layers(atom, cell) {
-            found
+        let (planes, open, layers) = if let Some((planes, layers)) = layers(atom, cell) {
+            (planes, 0.0, Some(layers))
         } else {
             let (plane, open) = bracket::by_plane(atom, cell).ok_or(Flat::Other)?;
             (vec![plane], open, None)
@@ -274,22 +311,15 @@ fn part(atom: &Program, node: usize, cell: &Bounds, cuts: usize) -> Result<Part,
 }
 
 /// Planes in the layers that hold a leaf's surface in a cell, and the volume of these.
-fn layers(atom: &Program, cell: &Bounds) -> Option<(Vec<Plane>, f64, Option<Layers>)> {
-    let (leaf, _) = atom.only_plain_leaf()?;
-    let found = leaf.field.layers(&Zone::of_bounds(cell).mapped(&leaf.to_local))?;
-    let (centre, whole) = (cell.center(), Polytope::cuboid(cell.half_extents(), far(cell)));
-    let (mut planes, mut halves, mut open) = (Vec::new(), Vec::new(), 0.0);
-    for Layer { normal, low, high } in found {
-        let slope = leaf.to_local.matrix3.transpose() * normal;
-        let height = normal.dot(leaf.to_local.transform_point3(centre)) - low.midpoint(high);
-        let plane = Plane::of(DVec3::ZERO, height, slope)?;
-        let half = 0.5 * (high - low) / slope.length() + whole.slack;
-        let above = |by: f64| whole.above(&plane.raised(by)).moments().volume;
-        open += above(-half) - above(half);
-        planes.push(plane);
-        halves.push(half);
+fn layers(atom: &Program, cell: &Bounds) -> Option<(Vec<Plane>, Layers)> {
+    let found = atom.layers(&Zone::of_bounds(cell), 0.0)?;
+    let (centre, slack) = (cell.center(), Polytope::cuboid(cell.half_extents(), far(cell)).slack);
+    let (mut planes, mut halves) = (Vec::new(), Vec::new());
+    for Layer { normal, low, high, .. } in found {
+        planes.push(Plane::of(DVec3::ZERO, normal.dot(centre) - low.midpoint(high), normal)?);
+        halves.push(0.5 * (high - low) + slack);
     }
-    Some((planes, open, Some(Layers { atom: atom.clone(), centre, halves })))
+    Some((planes, Layers { atom: atom.clone(), centre, halves }))
 }
 
 /// Tangents of a concave value, and what is above them all and may be outside.

@@ -2,6 +2,7 @@
 
 mod area;
 mod bracket;
+mod calibrated;
 mod clearance;
 mod clip;
 mod closed;
@@ -15,9 +16,12 @@ mod flat;
 mod gamma;
 mod integral;
 mod merged;
+mod meshed;
 mod moments;
+mod pieces;
 mod polytope;
 mod report;
+mod section;
 mod solid;
 mod thickness;
 mod thickness_report;

@@ -34,6 +34,11 @@ impl Plane {
         (at.is_finite() && normal.is_finite()).then_some(Plane { normal, at })
     }
 
+    /// A unit vector to the side that is above.
+    pub(super) fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
     /// How far a point is above it.
     pub(super) fn height(&self, p: DVec3) -> f64 {
         self.normal.dot(p) - self.at
@@ -69,6 +74,17 @@ pub(super) struct Face {
 }
 
 impl Face {
+    /// A side of a box about the origin that is flat along an axis, by half its sides.
+    pub(super) fn rectangle(half: DVec3, axis: usize) -> Face {
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[u, v]: [f64; 2]| {
+            let mut p = DVec3::ZERO;
+            (p[next], p[last]) = (u * half[next], v * half[last]);
+            p
+        });
+        Face { plane: Plane { normal: DVec3::AXES[axis], at: 0.0 }, corners: corners.to_vec(), is_side: true }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.corners.len() < 3
     }

@@ -28,9 +28,10 @@ pub struct MeasureReport {
     pub inertia_error: f64,
     /// The area of the surface, in square length units.
     pub area: f64,
-    /// How far the area may be off: rounding, of closed forms and flat faces; of others an
-    /// estimate.
+    /// The area is within this of the true one, if that is certain; else this is an estimate.
     pub area_error: f64,
+    /// Whether `area_error` is certain.
+    pub is_area_certain: bool,
     /// Whether all of it is known in closed form, right to rounding.
     pub is_closed_form: bool,
 }
@@ -47,6 +48,7 @@ impl MeasureReport {
             inertia_error: 0.0,
             area: 0.0,
             area_error: 0.0,
+            is_area_certain: true,
             is_closed_form: true,
         }
     }

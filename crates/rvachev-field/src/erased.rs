@@ -52,6 +52,17 @@ pub struct Layer {
     pub low: f64,
     /// to this.
     pub high: f64,
+    /// The cosine between the normal and the directions that the value rises along where it has the
+    /// level is no less; −1 where nothing is known.
+    pub least_cosine: f64,
+}
+
+impl Layer {
+    /// The same of the negated value.
+    #[must_use]
+    pub fn turned(self) -> Layer {
+        Layer { normal: -self.normal, low: -self.high, high: -self.low, ..self }
+    }
 }
 
 /// A [`Field`], erased to the evaluations that the engine runs.
@@ -141,9 +152,9 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn creases(&self, _region: [Interval; 3]) -> Vec<Crease> {
         Vec::new()
     }
-    /// Layers that hold all of the surface in a zone; nothing where that is not known, or there are
-    /// many.
-    fn layers(&self, _zone: &Zone) -> Option<Vec<Layer>> {
+    /// Layers that hold all points of a zone at which the value is `level`; nothing where that is
+    /// not known, or there are many.
+    fn layers(&self, _zone: &Zone, _level: f64) -> Option<Vec<Layer>> {
         None
     }
     /// A sound range over a zone of the leaf's frame.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::{Foot, Patches};
-use crate::{AnyField, Bounds, Chunk, Dual, Interval, ParamError, VALUE_LIMIT, Way, Zone, steep_slopes};
+use crate::{AnyField, Bounds, Chunk, Dual, Interval, Layer, ParamError, VALUE_LIMIT, Way, Zone, steep_slopes};
 use rvachev_num::symbol::Symbol;
 
 /// Nearer than this part of the surface's size, the direction to the foot is rounding, and the
@@ -29,7 +29,9 @@ const UPRIGHT: f64 = 0.99;
 pub struct SurfaceDistance {
     pub(super) patches: Arc<Patches>,
     pub(super) sign: Arc<dyn AnyField>,
-    error: f64,
+    /// The same before it was narrowed.
+    pub(super) whole_sign: Arc<dyn AnyField>,
+    pub(super) error: f64,
     pub(super) flat: Option<usize>,
     bounds: Bounds,
     /// The sign, where it is the same all over a zone.
@@ -49,7 +51,8 @@ impl SurfaceDistance {
         flat: Option<usize>,
         bounds: Bounds,
     ) -> SurfaceDistance {
-        SurfaceDistance { patches, sign, error, flat: flat.filter(|axis| *axis < 3), bounds, side: None }
+        let (whole_sign, flat) = (sign.clone(), flat.filter(|axis| *axis < 3));
+        SurfaceDistance { patches, sign, whole_sign, error, flat, bounds, side: None }
     }
 
     /// The surface.
@@ -183,7 +186,7 @@ impl SurfaceDistance {
     }
 
     /// A zone moved to 0 along the axis of a cylinder.
-    fn across(&self, zone: &Zone) -> Zone {
+    pub(super) fn across(&self, zone: &Zone) -> Zone {
         let Some(axis) = self.flat else { return *zone };
         let mut across = DVec3::ONE;
         across[axis] = 0.0;
@@ -307,6 +310,10 @@ impl AnyField for SurfaceDistance {
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         self.rising(zone, ways)
+    }
+
+    fn layers(&self, zone: &Zone, level: f64) -> Option<Vec<Layer>> {
+        self.level_layers(zone, level)
     }
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {

@@ -162,7 +162,10 @@ impl AnyField for MeshLeaf {
         false
     }
 
-    fn layers(&self, zone: &Zone) -> Option<Vec<Layer>> {
+    fn layers(&self, zone: &Zone, level: f64) -> Option<Vec<Layer>> {
+        if level != 0.0 {
+            return self.distance.layers(zone, level);
+        }
         if self.is_open() || !zone.is_finite() {
             return None;
         }
