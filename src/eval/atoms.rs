@@ -52,7 +52,7 @@ impl Program {
     /// Numbers of which the least has the sign of the value, in a region; nothing of values that
     /// jump or come of a search.
     pub(crate) fn numbers(&self, region: &Bounds) -> Option<Vec<Number>> {
-        if !self.is_steady() || self.tears() {
+        if !self.is_steady() || self.jumps() {
             return None;
         }
         let centre = region.center();

@@ -38,9 +38,11 @@ use rvachev_num::jobs;
 const FIRST: f64 = 12.0;
 const MOST: usize = 1 << 16;
 
-/// Cells that nothing is known of are divided so often at most: what is not known of then is not
-/// told by smaller ones.
+/// Cells that nothing is known of are divided so often at most, and no further where of what was
+/// not known, by the areas of their sides, more than this part is not known after it either: what is
+/// not known of then is not told by smaller ones.
 const DEEPEST: u8 = 8;
+const VAIN: f64 = 0.9;
 
 /// Cells begin so much before the box, as a part of their side, that hardly ever a face is in a
 /// side of one.
@@ -124,6 +126,10 @@ impl Cell {
         }
     }
 
+    fn is_unknown(&self) -> bool {
+        self.area[1].is_infinite()
+    }
+
     /// The fields of the lower bound and of the upper one.
     fn fields(&self) -> [DVec3; 2] {
         self.facing.map_or([DVec3::ZERO; 2], |Facing { normal, cosine }| [normal, normal / cosine])
@@ -161,7 +167,7 @@ pub(super) fn area(
     };
     let mut cells = jobs::try_in_order(found.blocks.len(), |n| cell(&found.blocks[n]))?;
     let (mut divided, mut sides) = (HashSet::new(), Sides::new());
-    let mut begun = f64::NAN;
+    let (mut begun, mut unknown) = (f64::NAN, f64::INFINITY);
     loop {
         run.check()?;
         let sums = sums(&cells, &divided, &mut sides, &grid);
@@ -170,8 +176,11 @@ pub(super) fn area(
             begun = open;
         }
         to_divide.report((begun / open).ln().max(0.0) / (begun / enough).ln().max(1.0));
-        let is_unknown = |cell: &Cell| cell.area[1].is_infinite() && cell.place.halvings >= DEEPEST;
-        if open.is_finite() && open <= enough || cells.len() >= MOST || cells.iter().any(is_unknown) {
+        let of_side = |cell: &Cell| 0.25f64.powi(i32::from(cell.place.halvings));
+        let before = std::mem::replace(&mut unknown, cells.iter().filter(|cell| cell.is_unknown()).map(of_side).sum());
+        let is_vain =
+            unknown > VAIN * before || cells.iter().any(|cell| cell.is_unknown() && cell.place.halvings >= DEEPEST);
+        if open.is_finite() && open <= enough || cells.len() >= MOST || is_vain {
             return Ok(open.is_finite().then_some([sums.least, sums.most]));
         }
         // While some are unknown, these are divided, and no others.

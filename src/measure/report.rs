@@ -28,7 +28,8 @@ pub struct MeasureReport {
     pub inertia_error: f64,
     /// The area of the surface, in square length units.
     pub area: f64,
-    /// The area is within this of the true one, if that is certain; else this is an estimate.
+    /// The area is within this of the true one, if that is certain; else this is an estimate. Of
+    /// lengths that are measured it is that of what was measured.
     pub area_error: f64,
     /// Whether `area_error` is certain.
     pub is_area_certain: bool,
