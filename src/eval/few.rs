@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::fill::Signed;
+use super::signed::Signed;
 use rvachev_field::kernel::Element;
 use rvachev_field::{AnyField, Chunk, Placement};
 

@@ -27,6 +27,7 @@ use glam::{DAffine3, DVec3};
 use super::composite::unscaled;
 use super::even::{either, ends};
 use super::few::{Few, Lane};
+use super::signed::Signed;
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::VALUE_LIMIT;
 use rvachev_field::kernel::{distinct, repeat};
@@ -41,28 +42,6 @@ const FADE: f64 = 0.25;
 
 /// Nothing is filled that is farther than this from an operand, in radii.
 pub(super) const FARTHEST: f64 = 2.0 + MOST / FADE;
-
-/// A value that is a distance, on one side.
-#[derive(Clone, Debug)]
-pub(super) struct Signed {
-    pub(super) field: Arc<dyn AnyField>,
-    /// 1 where its value counts as it is, −1 where its negative does.
-    pub(super) sign: f64,
-}
-
-impl Signed {
-    fn value(&self, p: DVec3) -> f64 {
-        self.sign * self.field.value(p.to_array())
-    }
-
-    fn range(&self, zone: &Zone) -> Interval {
-        self.field.range(zone) * Interval::point(self.sign)
-    }
-
-    fn slope(&self, p: DVec3) -> DVec3 {
-        self.sign * DVec3::from_array(self.field.dual(Dual::point(p.to_array())).gradient())
-    }
-}
 
 /// An operand: how far outside of it points are, and a box beyond which it is far.
 #[derive(Clone, Debug)]

@@ -57,6 +57,7 @@ mod seamless;
 mod shares;
 mod sided;
 mod sides;
+mod signed;
 mod source;
 mod support;
 mod swell;
