@@ -158,7 +158,7 @@ mod tests {
     fn levels_are_in_their_layers() {
         let fields: [&dyn AnyField; 3] = [
             &Sphere { radius: 1.0 },
-            &Torus { major_radius: 1.0, minor_radius: 0.4 },
+            &Torus { radius: 1.0, tube: 0.4 },
             &Cuboid { size: DVec3::new(1.5, 1.0, 0.7) },
         ];
         let random = |n: u32| f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11)) / 2f64.powi(32);
