@@ -175,7 +175,12 @@ mod tests {
             plate.union_with(&post, Blend::Fillet { radius: 0.3 }),
             Solid::superellipsoid([1.0, 0.8, 0.9], 0.4, 1.4).shell(0.2),
         ];
-        let random = |n: u32| f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11)) / 2f64.powi(32);
+        let random = |n: u32| {
+            let mixed = |z: u64, by: u32, times: u64| (z ^ z >> by).wrapping_mul(times);
+            let z = (u64::from(n) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let z = mixed(mixed(z, 30, 0xbf58_476d_1ce4_e5b9), 27, 0x94d0_49bb_1331_11eb);
+            (z >> 33) as f64 / 2f64.powi(31)
+        };
         for (number, body) in bodies.iter().enumerate() {
             let program = &compiled(body).unwrap().surface;
             let (mut told, mut asked) = (0, 0);

@@ -156,11 +156,8 @@ mod tests {
     /// No point with the level is beyond the layers, and these are thin.
     #[test]
     fn levels_are_in_their_layers() {
-        let fields: [&dyn AnyField; 3] = [
-            &Sphere { radius: 1.0 },
-            &Torus { radius: 1.0, tube: 0.4 },
-            &Cuboid { size: DVec3::new(1.5, 1.0, 0.7) },
-        ];
+        let fields: [&dyn AnyField; 3] =
+            [&Sphere { radius: 1.0 }, &Torus { radius: 1.0, tube: 0.4 }, &Cuboid { size: DVec3::new(1.5, 1.0, 0.7) }];
         let random = |n: u32| f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11)) / 2f64.powi(32);
         let vector = |n: u32| DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2)) * 2.0 - 1.0;
         for (number, field) in fields.into_iter().enumerate() {
