@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::result::PartFit;
+use super::result::{PartFit, PartLeaf};
 
 /// Equal leaves that are placed by a rule.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +63,13 @@ impl Layout {
             Layout::Line { .. } => 4,
             Layout::Grid { .. } => 8,
         }
+    }
+}
+
+impl Pattern {
+    /// What it is called: as the first of its leaves in the list, wherever the rule begins.
+    pub(super) fn name<'a>(&self, leaves: &'a [PartLeaf]) -> &'a str {
+        self.leaves.iter().min().map_or("", |first| &leaves[*first].name)
     }
 }
 

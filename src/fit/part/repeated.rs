@@ -46,7 +46,7 @@ pub(super) fn repeated(leaves: &[PartLeaf], size: f64) -> Option<(Solid, Vec<Pat
         let first = &leaves[pattern.leaves[0]];
         let places: Vec<DVec3> = pattern.leaves.iter().map(|i| leaves[*i].leaf.centre).collect();
         // What cannot be repeated stays as it is.
-        let repeated = copies(&pattern.layout, &places, &first.leaf, &first.name, size);
+        let repeated = copies(&pattern.layout, &places, &first.leaf, pattern.name(leaves), size);
         let Some(repeated) = repeated.filter(|solid| solid.bounds().is_ok()) else { continue };
         pattern.leaves.iter().for_each(|i| solids[*i] = None);
         solids[pattern.leaves[0]] = Some(repeated);

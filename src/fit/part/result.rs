@@ -205,7 +205,7 @@ impl PartFit {
             let first = &self.leaves[pattern.leaves[0]];
             let all: f64 = pattern.leaves.iter().map(|i| share(&self.leaves[*i])).sum();
             let text = format!("{}, {}; {all:.1} % of the surface", first.text, laid_out(pattern));
-            settings.comments.insert(first.name.clone(), text);
+            settings.comments.insert(pattern.name(&self.leaves).to_owned(), text);
         }
         let mut file = RustFile::new(settings);
         file.add(name, &self.solid);
