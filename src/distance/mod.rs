@@ -40,18 +40,21 @@ use crate::error::{MeshingError, RenderError};
 use crate::eval::{CompileError, Compiled, Surface, Wanted, compile, surface};
 use crate::{Bounds, Run, Solid, SolidError};
 
-/// The programs of a solid, compiled on first use and kept with it.
+/// The programs of a solid, compiled on first use and kept with it; its box is found when asked for.
 pub(crate) fn compiled(solid: &Solid) -> Result<Arc<Compiled>, SolidError> {
-    match compiled_with(solid, &Run::default()) {
+    match compile(solid, &FromMeshes, &Run::default()) {
         Ok(programs) => Ok(programs),
         Err(CompileError::Solid(error)) => Err(error),
         Err(CompileError::Cancelled(_)) => unreachable!("nobody has the token"),
     }
 }
 
-/// The same on the threads of a run, which may be cancelled.
+/// The same and the box on the threads of a run, which may be cancelled.
 pub(crate) fn compiled_with(solid: &Solid, run: &Run) -> Result<Arc<Compiled>, CompileError> {
-    compile(solid, &FromMeshes, run)
+    let [to_compile, to_bound] = run.stages([0.6, 0.4]);
+    let programs = compile(solid, &FromMeshes, &to_compile)?;
+    programs.bounds_with(&to_bound)?;
+    Ok(programs)
 }
 
 /// The surface of a bounded solid as patches, found on first use and kept with it.
@@ -71,7 +74,7 @@ pub(crate) fn surface_with(solid: &Solid, run: &Run) -> Result<Arc<Surface>, Com
         return Ok(surface);
     }
     // Feet are refined on the field itself: a ten thousandth of the solid does.
-    let length = 1e-1 * programs.bounds.longest_side();
+    let length = 1e-1 * programs.bounds().longest_side();
     let wanted = Wanted { length, tolerance: None, region: &Bounds::ALL, by_patches: true };
     surface(solid, &programs, &wanted, &FromMeshes, run)
 }

@@ -69,7 +69,7 @@ impl DistanceSource for FromMeshes {
         wanted: &Wanted<'_>,
         run: &Run,
     ) -> Result<Surface, CompileError> {
-        let whole = programs.bounds;
+        let whole = programs.bounds();
         let (bounds, flat, size) = extent(programs, wanted);
         let mut near = wanted.near();
         if let Some(axis) = flat {
@@ -227,8 +227,8 @@ fn farthest(bounds: &Bounds, size: f64) -> f64 {
 /// What of a solid is to be measured: its box, the axis along which it is a cylinder, and its size
 /// across that.
 fn extent(programs: &Compiled, wanted: &Wanted<'_>) -> (Bounds, Option<usize>, f64) {
-    let reach = wanted.reach(programs.bounds.longest_side());
-    let bounds = programs.bounds.intersection(&wanted.region.inflate(reach));
+    let reach = wanted.reach(programs.bounds().longest_side());
+    let bounds = programs.bounds().intersection(&wanted.region.inflate(reach));
     let flat = programs.flat_axis();
     let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);
     (bounds, flat, size)
@@ -275,7 +275,7 @@ fn part(
     let part = solid.intersection(knife, RFunction::MIN_MAX);
     let [to_compile, run] = &run.stages([0.1, 0.9]);
     let programs = compiled_with(&part, to_compile)?;
-    let bounds = programs.bounds.intersection(&clip);
+    let bounds = programs.bounds().intersection(&clip);
     if bounds.is_empty() {
         return Ok((Facets::default(), Vec::new()));
     }

@@ -142,7 +142,7 @@ fn faces_that_cut_a_surface_off_are_left_out() {
 fn plots_are_told_of_what_is_beyond_their_sides() {
     let solid = holed();
     let programs = compiled(&solid).unwrap();
-    let mesh = sharp(&programs.surface, programs.bounds, 3.0, &Run::default()).unwrap();
+    let mesh = sharp(&programs.surface, programs.bounds(), 3.0, &Run::default()).unwrap();
     let facets = || Facets::new(&mesh, |_| true);
     let side = |p: [DVec3; 2]| {
         let mut ends = p.map(|p| p.to_array().map(f64::to_bits));
@@ -266,7 +266,7 @@ fn patches_are_no_more_than_they_may_be() {
     let solid = Solid::superellipsoid([1.0, 0.7, 0.5], 0.4, 1.7).twist(deg(60.0));
     let programs = compiled(&solid).unwrap();
     let (slopes, run) = (Slopes { program: &programs.surface, precision: 1e-6 }, Run::default());
-    let mesh = sharp(&programs.surface, programs.bounds, 0.2, &run).unwrap();
+    let mesh = sharp(&programs.surface, programs.bounds(), 0.2, &run).unwrap();
     let count = mesh.triangles().len();
     let quilt = |most: usize, patience: f64| {
         let care = Care { most, patience, ..Care::new(1e-6) };

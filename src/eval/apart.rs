@@ -99,7 +99,7 @@ pub(super) fn measure(
             let (field, accuracy) = distance(ball, &wanted, source, run)?;
             // Of an opening nothing is left if there is no room for the ball, of a closing if
             // there was nothing to close.
-            let is_gone = kept(ball).is_none_or(|programs| programs.bounds.is_empty());
+            let is_gone = kept(ball).is_none_or(|programs| programs.bounds().is_empty());
             Measured { field, parts: None, accuracy, is_gone, sides: Vec::new() }
         }
         Node::Length { operand, length, about, .. } => {
@@ -108,14 +108,14 @@ pub(super) fn measure(
             let (field, parts, accuracy) = match exact.is_closed(solid) {
                 true => (sign(&programs), None, Accuracy::default()),
                 false => {
-                    let region = about.map_or(Bounds::ALL, |blend| region_of_ball(operand, blend, &programs.bounds));
+                    let region = about.map_or(Bounds::ALL, |blend| region_of_ball(operand, blend, &programs.bounds()));
                     let wanted = Wanted { length: inwards.abs(), tolerance, region: &region, by_patches: false };
                     let side = if inwards > 0.0 { Side::Inside } else { Side::Outside };
                     let Found { field, parts, accuracy } = sided((operand, side), &wanted, exact, source, run)?;
                     (field, parts, accuracy)
                 }
             };
-            let mut bounds = programs.bounds;
+            let mut bounds = programs.bounds();
             // Of a column a section does.
             if let Some(axis) = programs.flat_axis() {
                 (bounds.min[axis], bounds.max[axis]) = (0.0, 0.0);
@@ -139,8 +139,8 @@ pub(super) fn measure(
                 Node::Length { operand: joined, .. } => kept(joined).and_then(|programs| {
                     let side = if *operation == Operation::Union { Side::Outside } else { Side::Inside };
                     let (.., rest) = divided(joined, side, exact)?;
-                    let region = region_of_ball(joined, *blend, &programs.bounds);
-                    Some((rest.address(), side.region(&region, &programs.bounds)))
+                    let region = region_of_ball(joined, *blend, &programs.bounds());
+                    Some((rest.address(), side.region(&region, &programs.bounds())))
                 }),
                 _ => None,
             };
@@ -168,7 +168,7 @@ pub(super) fn measure(
 
 /// A solid's programs as a leaf.
 pub(super) fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
-    as_leaf(programs.surface.clone(), programs.bounds)
+    as_leaf(programs.surface.clone(), programs.bounds())
 }
 
 /// The distance to the surface of a solid, and how far it may be off.
@@ -179,9 +179,9 @@ pub(super) fn distance(
     run: &Run,
 ) -> Result<(Arc<dyn AnyField>, Accuracy), CompileError> {
     let Some(programs) = kept(solid) else { return Ok((Arc::new(Nothing), Accuracy::default())) };
-    if !programs.bounds.intersection(wanted.region).is_finite()
+    if !programs.bounds().intersection(wanted.region).is_finite()
         && programs.flat_axis().is_none()
-        && !programs.bounds.is_empty()
+        && !programs.bounds().is_empty()
     {
         let tiles = Tiles::new(solid.clone(), &programs, wanted, source);
         let accuracy = tiles.accuracy(&programs).plus(programs.accuracy);
@@ -189,7 +189,7 @@ pub(super) fn distance(
     }
     let surface = surface(solid, &programs, wanted, source, run)?;
     let Surface { patches, accuracy, flat, .. } = &*surface;
-    let field = SurfaceDistance::new(patches.clone(), sign(&programs), accuracy.error, *flat, programs.bounds);
+    let field = SurfaceDistance::new(patches.clone(), sign(&programs), accuracy.error, *flat, programs.bounds());
     Ok((Arc::new(field), accuracy.plus(programs.accuracy)))
 }
 
@@ -245,7 +245,7 @@ impl Near {
             _ => (0.0, 0.0),
         };
         let boxes: Vec<Bounds> =
-            operands.iter().map(|operand| kept(operand).map_or(Bounds::EMPTY, |programs| programs.bounds)).collect();
+            operands.iter().map(|operand| kept(operand).map_or(Bounds::EMPTY, |programs| programs.bounds())).collect();
         let inside = match operation {
             Operation::Union => boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own)),
             Operation::Difference => boxes.first().copied().unwrap_or(Bounds::EMPTY),

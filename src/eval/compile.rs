@@ -10,7 +10,7 @@ mod check;
 mod leaves;
 
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
@@ -38,21 +38,41 @@ pub(crate) struct Compiled {
     pub(crate) field: Program,
     pub(crate) surface: Program,
     pub(crate) palette: Palette,
-    pub(crate) bounds: Bounds,
-    /// The path to the node that makes the bounds infinite, if they are.
+    /// What the parts tell of the box, and the box once it was asked for.
+    told: Bounds,
+    bounds: OnceLock<Bounds>,
+    /// The path to the node that makes the bounds infinite, if they are: it tells of none.
     pub(crate) unbounded: String,
     pub(crate) accuracy: Accuracy,
     exact: Exact,
 }
 
 impl Compiled {
+    /// A box that holds the solid. Where its parts do not tell it, it is found on first use.
+    pub(crate) fn bounds(&self) -> Bounds {
+        match self.bounds_with(&Run::default()) {
+            Ok(bounds) => bounds,
+            Err(Cancelled) => unreachable!("nobody has the token"),
+        }
+    }
+
+    /// The same by a run, which may be cancelled.
+    pub(crate) fn bounds_with(&self, run: &Run) -> Result<Bounds, Cancelled> {
+        if let Some(bounds) = self.bounds.get() {
+            return Ok(*bounds);
+        }
+        let is_known = self.told.is_empty() || self.told.is_finite() && !is_loose(&self.surface);
+        let bounds = if is_known { self.told } else { extent(&self.surface, &self.told, run)? };
+        Ok(*self.bounds.get_or_init(|| bounds))
+    }
+
     /// The point of the surface that is nearest to one where the value is the true distance: along
     /// the gradient. None elsewhere, and at the surface, where a value of 0 may also be that of a
     /// face between parts.
     pub(crate) fn foot(&self, p: DVec3) -> Option<DVec3> {
         /// How far off the surface a foot may be, in parts of the size.
         const OFF: f64 = 1e-10;
-        let least = OFF * self.bounds.longest_side();
+        let least = OFF * self.bounds().longest_side();
         let (value, slope) = self.surface.gradient(p);
         let is_exact = if value > 0.0 { self.exact.inside } else { self.exact.outside };
         if !is_exact || value.abs() <= least {
@@ -70,13 +90,13 @@ impl Compiled {
     /// The axis along which the solid is a column without end: the one axis that its box is
     /// infinite along, where its value does not depend on it.
     pub(crate) fn flat_axis(&self) -> Option<usize> {
-        if self.bounds.is_empty() || self.bounds.is_finite() {
+        if self.bounds().is_empty() || self.bounds().is_finite() {
             return None;
         }
-        let size = self.bounds.size();
+        let size = self.bounds().size();
         let mut open = (0..3).filter(|axis| size[*axis] == f64::INFINITY);
         let axis = open.next().filter(|_| open.next().is_none())?;
-        let mut part = self.bounds;
+        let mut part = self.bounds();
         let reach = (0..3).filter(|other| *other != axis).map(|other| size[other]).fold(0.0, f64::max);
         (part.min[axis], part.max[axis]) = (-reach, reach);
         self.surface.is_even_along(axis, &part).then_some(axis)
@@ -86,7 +106,7 @@ impl Compiled {
 /// The share of the time that the walk before compiling takes: of most solids it is less.
 const PREPARING: f64 = 0.05;
 
-/// Of the time of a compilation, what the walk through the graph takes.
+/// Of the time of a compilation, what the walk through the graph takes; the rest goes to the box.
 const WALK: f64 = 0.6;
 
 /// More nodes than this are not compiled.
@@ -120,9 +140,14 @@ fn compile_anew(solid: &Solid, source: &'static dyn DistanceSource, run: &Run) -
             Work::Measure(node) => measure(node, &exact, source, &run.stage(done / all, end / all))?,
             Work::Compile(part) if kept(part).is_some() => {}
             Work::Compile(part) => {
-                let compiled = Compiler::new(&exact, &run.stage(done / all, end / all))
+                let [to_walk, to_bound] = run.stage(done / all, end / all).stages([WALK, 1.0 - WALK]);
+                let compiled = Compiler::new(&exact, &to_walk)
                     .compile(part)
                     .map_err(|error| of_whole(solid, &exact, run, error))?;
+                // What is made of it asks for its box.
+                if part.address() != solid.address() {
+                    compiled.bounds_with(&to_bound)?;
+                }
                 let _ = part.compiled().set(Arc::new(compiled));
             }
         }
@@ -197,7 +222,7 @@ impl<'e> Compiler<'e> {
                     self.built.insert((site.context, site.solid.address()), Some(built));
                     // Of a part that is reached in several places there is more than one.
                     finished += 1.0;
-                    self.run.report(WALK * (finished / self.exact.len() as f64).min(1.0));
+                    self.run.report((finished / self.exact.len() as f64).min(1.0));
                 }
             }
         }
@@ -211,13 +236,9 @@ impl<'e> Compiler<'e> {
             Ok::<_, Cancelled>(Program::assemble(scene.clone(), nodes, operands, root, Vec::new()))
         };
         let (field, surface) = (program(built.field)?, program(built.surface)?);
-        let mut bounds = if built.sides.inside.is_empty() { Bounds::EMPTY } else { built.sides.inside };
-        if !bounds.is_empty() && (!bounds.is_finite() || is_loose(&surface)) {
-            bounds = extent(&surface, &bounds, &run.stage(WALK, 1.0))?;
-        }
-        let unbounded = if bounds.is_finite() { String::new() } else { unbounded };
+        let told = if built.sides.inside.is_empty() { Bounds::EMPTY } else { built.sides.inside };
         let palette = Palette::new(surface.clone(), coats);
-        Ok(Compiled { field, surface, palette, bounds, unbounded, accuracy, exact })
+        Ok(Compiled { field, surface, palette, told, bounds: OnceLock::new(), unbounded, accuracy, exact })
     }
 
     /// The path to the node that makes the solid unbounded: down through unions to the
@@ -307,7 +328,7 @@ impl<'e> Compiler<'e> {
             // What is compiled by itself knows its box better.
             let context = self.contexts.get(inner);
             if let Some(programs) = kept(operand).filter(|_| is_measured && context.shift.is_none()) {
-                let known = snug(programs.bounds.transformed(&context.forward));
+                let known = snug(programs.bounds().transformed(&context.forward));
                 built.sides.inside = built.sides.inside.intersection(&known);
             }
             built

@@ -16,7 +16,7 @@ pub(super) fn fit(solid: &Solid, run: &Run) -> Result<Result<(), ParamError>, Ca
     let Node::Swept { profile, sweep, ball: Some(ball), .. } = solid.node() else { return Ok(Ok(())) };
     let (name, caps, smallest) = sweep.rim();
     let (Some(size), Some(programs)) = (caps.size(), kept(&profile.0)) else { return Ok(Ok(())) };
-    let mut section = programs.bounds;
+    let mut section = programs.bounds();
     (section.min.z, section.max.z) = (0.0, 0.0);
     // A section without end has no largest circle, one that is empty no edge.
     if !section.is_finite() || section.is_empty() {

@@ -30,6 +30,9 @@ const MOST: usize = 1200;
 /// Boxes are this part of the square of their width high: ranges over wider ones tell too little.
 const FLAT: f64 = 8.0;
 
+/// So many points are tried in a part.
+const LOOKS: usize = 3;
+
 /// A leaf whose values are searched for counts as so many.
 const SEARCHED: usize = 50;
 
@@ -39,35 +42,42 @@ pub(super) struct Part {
     pub(super) program: Program,
     /// Whether it holds nothing else.
     is_inside: bool,
+    /// The slopes within it, where they are known.
+    slopes: Option<[Interval; 3]>,
 }
 
 /// The box with the program narrowed to it, if it may hold some of the inside.
 pub(super) fn narrowed(bounds: Bounds, program: &Program) -> Option<Part> {
     match program.narrow(&bounds) {
         Region::Outside => None,
-        Region::Inside => Some(Part { bounds, program: program.clone(), is_inside: true }),
+        Region::Inside => Some(Part { bounds, program: program.clone(), is_inside: true, slopes: None }),
         Region::Surface(program) => {
-            let bounds = clipped(&bounds, &program);
-            (!bounds.is_empty()).then_some(Part { bounds, program, is_inside: false })
+            let slopes = slopes(&bounds, &program);
+            let bounds = slopes.map_or(bounds, |slopes| clipped(&bounds, &program, slopes));
+            (!bounds.is_empty()).then_some(Part { bounds, program, is_inside: false, slopes })
         }
     }
 }
 
-/// The part of a box beyond which the value in the middle and the slopes of the whole show that
-/// nothing is inside: behind deformations that tells more than the ranges of the leaves.
+/// The slopes of the whole in a box: behind deformations they tell more than the ranges of the
+/// leaves.
+fn slopes(bounds: &Bounds, program: &Program) -> Option<[Interval; 3]> {
+    let is_smooth = |node: &Node| node.valued_by().is_none_or(|leaf| program.instance(leaf).field.is_formula());
+    if program.frames.is_empty() || !bounds.is_finite() || program.jumps() || !program.nodes.iter().all(is_smooth) {
+        return None;
+    }
+    let hull = [0, 1, 2].map(|axis| Interval::new(bounds.min[axis], bounds.max[axis]));
+    Some(program.evaluate(Dual::point(hull), &mut Vec::new()).gradient())
+}
+
+/// The part of a box beyond which the value in the middle and the slopes show that nothing is inside.
 ///
 /// ```text
 ///     f(x) ≤ f(c) + Σ max sᵢ (xᵢ − cᵢ)    of slopes s within the box, about its middle c
 /// ```
-fn clipped(bounds: &Bounds, program: &Program) -> Bounds {
+fn clipped(bounds: &Bounds, program: &Program, slopes: [Interval; 3]) -> Bounds {
     /// More than rounding, in proportion.
     const MARGIN: f64 = 1e-12;
-    let is_smooth = |node: &Node| node.valued_by().is_none_or(|leaf| program.instance(leaf).field.is_formula());
-    if program.frames.is_empty() || !bounds.is_finite() || program.jumps() || !program.nodes.iter().all(is_smooth) {
-        return *bounds;
-    }
-    let hull = [0, 1, 2].map(|axis| Interval::new(bounds.min[axis], bounds.max[axis]));
-    let slopes = program.evaluate(Dual::point(hull), &mut Vec::new()).gradient();
     let (middle, half) = (bounds.center(), 0.5 * bounds.size());
     let rises = DVec3::from_array([0, 1, 2].map(|axis| slopes[axis].magnitude() * half[axis]));
     let rise = rises.element_sum();
@@ -170,11 +180,12 @@ impl Side {
             let reach = top.reach;
             if reach - self.reached <= near || top.part.is_inside || asked >= most {
                 heap.push(top);
+                if std::env::var_os("DBG").is_some() { eprintln!("SIDE axis {} asked {asked} of {most} toll gap {:.5} width {:.4} parts {}", self.axis, (reach - self.reached) / self.width[self.axis], self.width[self.axis], heap.len()); }
                 break reach;
             }
             asked += 2;
             run.check()?;
-            for half in halves(&top.part.bounds, self.across(&top.part.bounds)) {
+            for half in halves(&top.part.bounds, self.across(&top.part)) {
                 if let Some(part) = narrowed(half, &top.part.program) {
                     heap.push(self.candidate(part));
                 }
@@ -184,11 +195,14 @@ impl Side {
         Ok(farthest)
     }
 
-    /// The axis across which a box is halved. A surface that is farthest in a point falls with the
-    /// square of the distance from there, so that flat boxes hold it best.
-    fn across(&self, bounds: &Bounds) -> usize {
-        let part = (bounds.size() / self.width.max(DVec3::splat(f64::MIN_POSITIVE))).to_array();
+    /// The axis across which a box is halved: where slopes are known, that which leaves most open of
+    /// how far the inside reaches. Beside the side it is by how much values change, along it how far
+    /// the slope is not known. Else a surface that is farthest in a point falls with the square of
+    /// the distance from there, so that flat boxes hold it best.
+    fn across(&self, part: &Part) -> usize {
         let [a, b] = [(self.axis + 1) % 3, (self.axis + 2) % 3];
+        let half = part.bounds.half_extents();
+        let part = (part.bounds.size() / self.width.max(DVec3::splat(f64::MIN_POSITIVE))).to_array();
         let beside = if part[a] >= part[b] { a } else { b };
         if part[self.axis] >= FLAT * part[beside] * part[beside] { self.axis } else { beside }
     }
@@ -201,24 +215,41 @@ impl Side {
         Candidate { reach, size: part.bounds.size().length_squared(), part }
     }
 
-    /// Looks for a point that is inside on the line through the middle of a part.
+    /// Looks for a point of a part that is inside and far out, as its slope in the middle tells.
+    ///
+    /// ```text
+    ///     direction        where the part's top is inside, by the slope, the point there that is
+    ///      ^   ___x_       nearest beside the middle; else the uppermost one that is inside
+    ///      |  |  /  |
+    ///      |  | c   |
+    /// ```
     fn look(&mut self, part: &Part, reach: f64) {
-        const STEPS: usize = 8;
-        let middle = part.bounds.center();
-        let along = self.direction.dot(middle);
-        let is_inside = |by: f64| part.is_inside || part.program.value(middle + self.direction * by) > 0.0;
-        let (mut inside, mut beyond) = (0.0, reach - along);
-        if !is_inside(inside) {
-            return;
-        }
-        for _ in 0..STEPS {
-            if along + beyond <= self.reached {
+        let (middle, half) = (part.bounds.center(), part.bounds.half_extents());
+        let (value, slope) = part.program.gradient(middle);
+        let (rise, top) = (self.direction.dot(slope), reach - self.direction.dot(middle));
+        let beside = slope - rise * self.direction;
+        let gain = beside.abs().dot(half);
+        let at_top = value + rise * top;
+        // What the linear field lacks at the top is gained beside the middle, or by going down.
+        let part_of = if gain > 0.0 { (-at_top / gain).clamp(0.0, 1.0) } else { 0.0 };
+        let mut point = middle + part_of * half * beside.map(f64::signum);
+        let mut up = if at_top + gain >= 0.0 { top } else { (value + gain) / -rise };
+        for _ in 0..LOOKS {
+            let farthest = self.direction.dot(point) + up;
+            // Further down than the part no slope tells.
+            if farthest.is_nan() || farthest <= self.reached || up < -top {
                 return;
             }
-            let by = 0.5 * (inside + beyond);
-            if is_inside(by) { inside = by } else { beyond = by }
+            let at = point + self.direction * up;
+            let here = part.program.value(at);
+            if here > 0.0 {
+                self.reached = farthest;
+                return;
+            }
+            // Back to where the slope has the surface, and as much again.
+            let by = 2.0 * here / rise;
+            if rise < 0.0 { up -= by } else { point = point.lerp(middle, 0.5) }
         }
-        self.reached = self.reached.max(along + inside);
     }
 }
 

@@ -58,18 +58,18 @@ pub(super) fn sided(
         let (field, accuracy) = distance(solid, wanted, source, run)?;
         return Ok(Found { field, parts: None, accuracy });
     };
-    let region = kept(solid).map_or(*wanted.region, |programs| side.region(wanted.region, &programs.bounds));
+    let region = kept(solid).map_or(*wanted.region, |programs| side.region(wanted.region, &programs.bounds()));
     let rest = sided((&rest, side), &Wanted { region: &region, ..*wanted }, exact, source, run)?;
     let (mut fields, mut accuracy) = (vec![rest.field], rest.accuracy);
     for operand in &known {
         let programs = compile(operand, source, run)?;
         accuracy = accuracy.max(programs.accuracy);
-        fields.push(as_distance(programs.surface.clone(), programs.bounds));
+        fields.push(as_distance(programs.surface.clone(), programs.bounds()));
     }
     let leaves = fields.iter().map(|field| Solid::from_node(Node::Leaf(field.clone()))).collect();
     let joined = Solid::from_node(Node::Join { operation, rule: RFunction::MIN_MAX, operands: leaves });
     let programs = compile(&joined, source, run)?;
-    let bounds = kept(solid).map_or(programs.bounds, |programs| programs.bounds);
+    let bounds = kept(solid).map_or(programs.bounds(), |programs| programs.bounds());
     let field = as_distance(programs.surface.clone(), bounds);
     Ok(Found { field, parts: Some(Parts { operation, fields: fields.into() }), accuracy })
 }

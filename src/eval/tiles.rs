@@ -116,7 +116,7 @@ impl Tiles {
         source: &'static dyn DistanceSource,
     ) -> Tiles {
         let Wanted { length, tolerance, .. } = *wanted;
-        let (sign, bounds) = (sign(programs), programs.bounds);
+        let (sign, bounds) = (sign(programs), programs.bounds());
         let period = programs.surface.period();
         let tiling = Tiling::new(SIDE * length, period);
         Tiles { solid, sign, bounds, length, tolerance, source, period, tiling, made: RwLock::default() }

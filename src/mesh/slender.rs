@@ -107,7 +107,7 @@ mod tests {
             let centre = DVec3::new(1.1, -0.3, 0.2);
             let ball = Solid::sphere(0.5 * diameter * cell).translate(centre);
             let programs = compiled(&(Solid::cuboid([4.0, 3.0, 2.0]) - ball)).unwrap();
-            let subject = Subject { program: &programs.surface, bounds: programs.bounds, palette: None, whole: None };
+            let subject = Subject { program: &programs.surface, bounds: programs.bounds(), palette: None, whole: None };
             let found = subject.slender(cell, &|_| true, &Run::default()).unwrap();
             assert_eq!(!found.is_empty(), is_found, "{diameter}: {}", found.len());
             for Slender { at, thickness, is_close } in found {
@@ -122,7 +122,7 @@ mod tests {
     fn places_of_what_is_wide_are_apart() {
         let fin = Solid::cuboid([3.9, 2.9, 1e-4]) | Solid::cuboid([1.0; 3]);
         let programs = compiled(&fin).unwrap();
-        let subject = Subject { program: &programs.surface, bounds: programs.bounds, palette: None, whole: None };
+        let subject = Subject { program: &programs.surface, bounds: programs.bounds(), palette: None, whole: None };
         let found = subject.slender(0.25, &|p| p.x > 0.6, &Run::default()).unwrap();
         assert!(found.len() > 100 && found.iter().all(|own| own.at.x > 0.6 && !own.is_close), "{}", found.len());
         assert!(found.iter().all(|own| (own.at.z.abs() - 5e-5).abs() < 1e-5));

@@ -140,7 +140,7 @@ impl Whole {
     /// An error if there is a part of the solid beyond the bounds, of a size that cells of this
     /// size show; where they would be too many, cells of a thousandth of the solid's box.
     pub(crate) fn refuse_beyond(&self, cell: CellSize, run: &Run) -> Result<(), MeshingError> {
-        let (own, given) = (self.programs.bounds, self.given);
+        let (own, given) = (self.programs.bounds(), self.given);
         let step = Lattice::new(&given, cell)?.step();
         if given.contains_bounds(&own) || !own.is_finite() {
             return Ok(());

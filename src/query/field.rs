@@ -97,7 +97,7 @@ impl Solid {
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].
     pub fn bounds(&self) -> Result<Bounds, SolidError> {
-        Ok(compiled(self)?.bounds)
+        Ok(compiled(self)?.bounds())
     }
 
     /// The box of the solid, for work that needs one.
@@ -106,8 +106,9 @@ impl Solid {
     /// [`SolidError::Unbounded`], naming the node, if it is infinite.
     pub fn finite_bounds(&self) -> Result<Bounds, SolidError> {
         let programs = compiled(self)?;
-        if programs.bounds.is_empty() || programs.bounds.is_finite() {
-            return Ok(programs.bounds);
+        let bounds = programs.bounds();
+        if bounds.is_empty() || bounds.is_finite() {
+            return Ok(bounds);
         }
         Err(SolidError::Unbounded { path: programs.unbounded.clone() })
     }
@@ -141,7 +142,7 @@ impl Solid {
         check::direction("direction", direction).map_err(SolidError::Argument)?;
         let direction = unit(direction);
         let whole = [joint(&programs, origin), f64::INFINITY];
-        Ok(first_hit(&programs.surface, &programs.bounds, (origin, direction), whole, Care::Full))
+        Ok(first_hit(&programs.surface, &programs.bounds(), (origin, direction), whole, Care::Full))
     }
 
     /// The point of the surface nearest to `p`, to about 10⁻⁹ of the solid's size where the surface

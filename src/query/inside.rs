@@ -22,7 +22,7 @@ pub(super) fn is_inside(programs: &Compiled, p: DVec3) -> bool {
     }
     // Where its value is taken.
     let p = DVec3::from(limited(p));
-    let size = if programs.bounds.is_finite() { programs.bounds.longest_side() } else { 1.0 };
+    let size = if programs.bounds().is_finite() { programs.bounds().longest_side() } else { 1.0 };
     let scale = size + p.abs().max_element();
     value > -ROUNDING * scale && is_surrounded(program, p, scale)
 }
@@ -34,7 +34,7 @@ pub(super) fn joint(programs: &Compiled, origin: DVec3) -> f64 {
     if program.value(origin) > 0.0 || program.jumps() || !is_inside(programs, origin) {
         return 0.0;
     }
-    let size = if programs.bounds.is_finite() { programs.bounds.longest_side() } else { 1.0 };
+    let size = if programs.bounds().is_finite() { programs.bounds().longest_side() } else { 1.0 };
     BESIDE * (size + origin.abs().max_element())
 }
 

@@ -78,7 +78,7 @@ impl Compiler<'_> {
         let margin = margin(site.solid, &measured, radius);
         let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
         let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
-            let whole = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
+            let whole = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds());
             // What is taken away goes on beyond the surface: values are 0 where the new one is, and
             // nowhere else.
             let (bounds, hull) = if is_union { (whole, whole) } else { (whole.inflate(radius), Bounds::ALL) };

@@ -69,7 +69,7 @@ mod tests {
 
     fn found(solid: &Solid) -> Inside {
         let programs = compiled(solid).unwrap();
-        inside(&programs.surface, &programs.bounds, &Run::default()).unwrap()
+        inside(&programs.surface, &programs.bounds(), &Run::default()).unwrap()
     }
 
     #[test]
