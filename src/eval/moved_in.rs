@@ -42,19 +42,17 @@ pub(super) struct Part {
     pub(super) program: Program,
     /// Whether it holds nothing else.
     is_inside: bool,
-    /// The slopes within it, where they are known.
-    slopes: Option<[Interval; 3]>,
 }
 
 /// The box with the program narrowed to it, if it may hold some of the inside.
 pub(super) fn narrowed(bounds: Bounds, program: &Program) -> Option<Part> {
     match program.narrow(&bounds) {
         Region::Outside => None,
-        Region::Inside => Some(Part { bounds, program: program.clone(), is_inside: true, slopes: None }),
+        Region::Inside => Some(Part { bounds, program: program.clone(), is_inside: true }),
         Region::Surface(program) => {
             let slopes = slopes(&bounds, &program);
             let bounds = slopes.map_or(bounds, |slopes| clipped(&bounds, &program, slopes));
-            (!bounds.is_empty()).then_some(Part { bounds, program, is_inside: false, slopes })
+            (!bounds.is_empty()).then_some(Part { bounds, program, is_inside: false })
         }
     }
 }
@@ -180,12 +178,11 @@ impl Side {
             let reach = top.reach;
             if reach - self.reached <= near || top.part.is_inside || asked >= most {
                 heap.push(top);
-                if std::env::var_os("DBG").is_some() { eprintln!("SIDE axis {} asked {asked} of {most} toll gap {:.5} width {:.4} parts {}", self.axis, (reach - self.reached) / self.width[self.axis], self.width[self.axis], heap.len()); }
                 break reach;
             }
             asked += 2;
             run.check()?;
-            for half in halves(&top.part.bounds, self.across(&top.part)) {
+            for half in halves(&top.part.bounds, self.across(&top.part.bounds)) {
                 if let Some(part) = narrowed(half, &top.part.program) {
                     heap.push(self.candidate(part));
                 }
@@ -195,14 +192,11 @@ impl Side {
         Ok(farthest)
     }
 
-    /// The axis across which a box is halved: where slopes are known, that which leaves most open of
-    /// how far the inside reaches. Beside the side it is by how much values change, along it how far
-    /// the slope is not known. Else a surface that is farthest in a point falls with the square of
-    /// the distance from there, so that flat boxes hold it best.
-    fn across(&self, part: &Part) -> usize {
+    /// The axis across which a box is halved. A surface that is farthest in a point falls with the
+    /// square of the distance from there, so that flat boxes hold it best.
+    fn across(&self, bounds: &Bounds) -> usize {
         let [a, b] = [(self.axis + 1) % 3, (self.axis + 2) % 3];
-        let half = part.bounds.half_extents();
-        let part = (part.bounds.size() / self.width.max(DVec3::splat(f64::MIN_POSITIVE))).to_array();
+        let part = (bounds.size() / self.width.max(DVec3::splat(f64::MIN_POSITIVE))).to_array();
         let beside = if part[a] >= part[b] { a } else { b };
         if part[self.axis] >= FLAT * part[beside] * part[beside] { self.axis } else { beside }
     }

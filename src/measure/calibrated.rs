@@ -34,9 +34,9 @@ use crate::space::{Block, Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_num::jobs;
 
-/// Cells along the longest side at first, and how many there may be.
+/// Cells along the longest side at first, and how many there may be: more take seconds.
 const FIRST: f64 = 12.0;
-const MOST: usize = 1 << 16;
+const MOST: usize = 1 << 14;
 
 /// Cells that nothing is known of are divided so often at most, and no further where of what was
 /// not known, by the areas of their sides, more than this part is not known after it either: what is
@@ -147,8 +147,8 @@ struct Sums {
     open: Vec<f64>,
 }
 
-/// Bounds of the area of a program's surface, which is nowhere but in a box; nothing if no upper one
-/// is known.
+/// Bounds of the area of a program's surface, which is nowhere but in a box, as near to each other as
+/// is asked; nothing if that takes too many cells, as far as the last round tells.
 pub(super) fn area(
     program: &Program,
     bounds: &Bounds,
@@ -168,6 +168,7 @@ pub(super) fn area(
     let mut cells = jobs::try_in_order(found.blocks.len(), |n| cell(&found.blocks[n]))?;
     let (mut divided, mut sides) = (HashSet::new(), Sides::new());
     let (mut begun, mut unknown) = (f64::NAN, f64::INFINITY);
+    let mut last = (0.0, f64::INFINITY);
     loop {
         run.check()?;
         let sums = sums(&cells, &divided, &mut sides, &grid);
@@ -180,11 +181,15 @@ pub(super) fn area(
         let before = std::mem::replace(&mut unknown, cells.iter().filter(|cell| cell.is_unknown()).map(of_side).sum());
         let is_vain =
             unknown > VAIN * before || cells.iter().any(|cell| cell.is_unknown() && cell.place.halvings >= DEEPEST);
-        if open.is_finite() && open <= enough || cells.len() >= MOST || is_vain {
-            return Ok(open.is_finite().then_some([sums.least, sums.most]));
+        if open.is_finite() && open <= enough {
+            return Ok(Some([sums.least, sums.most]));
         }
+        if is_vain || cells_needed([last, (cells.len() as f64, open)], enough) > MOST as f64 {
+            return Ok(None);
+        }
+        last = (cells.len() as f64, open);
         // While some are unknown, these are divided, and no others.
-        let chosen = chosen(&sums.open, (LEFT * enough).min(f64::MAX), (MOST - cells.len()).div_ceil(4));
+        let chosen = chosen(&sums.open, (LEFT * enough).min(f64::MAX));
         let eighths = |n: usize| {
             run.check()?;
             let Cell { place, program, .. } = &cells[chosen[n]];
@@ -207,9 +212,18 @@ pub(super) fn area(
     }
 }
 
-/// The cells that leave most open, until what the others leave is at most `left`; not more than so
-/// many.
-fn chosen(open: &[f64], left: f64, most: usize) -> Vec<usize> {
+/// How many cells leave no more than enough open, if that falls with a power of their number as it
+/// did in the last round.
+fn cells_needed([(cells_before, before), (cells, open)]: [(f64, f64); 2], enough: f64) -> f64 {
+    if before.is_infinite() {
+        return cells;
+    }
+    let power = (before / open).ln() / (cells / cells_before).ln();
+    if power > 0.0 { cells * (open / enough).powf(1.0 / power) } else { f64::INFINITY }
+}
+
+/// The cells that leave most open, until what the others leave is at most `left`.
+fn chosen(open: &[f64], left: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..open.len()).collect();
     order.sort_unstable_by(|a, b| open[*a].total_cmp(&open[*b]).then(a.cmp(b)));
     let mut sum = 0.0;
@@ -217,8 +231,7 @@ fn chosen(open: &[f64], left: f64, most: usize) -> Vec<usize> {
         sum += open[**at];
         sum <= left
     });
-    let kept = kept.count().max(open.len().saturating_sub(most));
-    order.split_off(kept)
+    order.split_off(kept.count())
 }
 
 /// A side of a cell, or the part of one that is a side of what is beside it.
