@@ -17,9 +17,7 @@ use super::draft_mesh::DraftMesh;
 use super::gbuffer::{Surface, Window};
 use super::scene::Scene;
 use super::settings::{RenderError, RenderSettings, setting};
-use crate::raster::{
-    Facing, LayerSource, MeshLayers, RasterError, RasterView, Slant, SurfaceId, Target, Tile,
-};
+use crate::raster::{Facing, LayerSource, MeshLayers, RasterError, RasterView, Slant, SurfaceId, Target, Tile};
 use crate::{Camera, Mesh};
 
 /// The near plane, in proportion to the distance from the eye to its target: there is none for

@@ -107,9 +107,8 @@ mod tests {
     /// Of so many teeth, six tenths of their distance thick.
     fn comb(teeth: u32) -> Solid {
         let pitch = 3.0 / f64::from(teeth);
-        let tooth = |n: u32| {
-            Solid::cuboid([0.6 * pitch, 2.0, 1.0]).translate([(f64::from(n) + 0.5) * pitch - 1.5, 0.0, 0.0])
-        };
+        let tooth =
+            |n: u32| Solid::cuboid([0.6 * pitch, 2.0, 1.0]).translate([(f64::from(n) + 0.5) * pitch - 1.5, 0.0, 0.0]);
         let back = Solid::cuboid([3.0, 0.3, 1.1]).translate([0.0, 1.0, 0.0]);
         Solid::union_all((0..teeth).map(tooth), RFunction::MIN_MAX) | back
     }
