@@ -42,6 +42,7 @@ pub use volume::{Volume, VolumeError, VolumeSettings};
 
 pub(crate) use paint::{corner_colors, each_triangle};
 pub(crate) use shown::Hidden;
+pub(crate) use signs::BLOCK;
 pub(crate) use slender::Slender;
 pub(crate) use slopes::{Slope, Slopes};
 pub(crate) use subject::{Subject, Whole};

@@ -10,22 +10,15 @@
 //! Pixels at edges are drawn once more in a view of `samples` times as many columns and rows, as
 //! far as there are any in a tile.
 
-use std::sync::{Arc, PoisonError};
-
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::draft_mesh::DraftMesh;
 use super::gbuffer::{Surface, Window};
 use super::scene::Scene;
 use super::settings::{RenderError, RenderSettings, setting};
-use crate::mesh::Subject;
-use crate::raster::{
-    ClosedMesh, Facing, LayerSource, MeshLayers, RasterError, RasterView, Slant, SurfaceId, Target, Tile,
-};
-use crate::{Camera, CellSize, Mesh, MeshSettings, Run, ThinFeatures};
-
-/// Where something may be thinner than a cell, cells of a quarter of the size are tried.
-const HALVINGS: u32 = 2;
+use crate::raster::{Facing, LayerSource, MeshLayers, RasterError, RasterView, Slant, SurfaceId, Target, Tile};
+use crate::{Camera, Mesh};
 
 /// The near plane, in proportion to the distance from the eye to its target: there is none for
 /// rays.
@@ -34,44 +27,6 @@ const NEAR: f64 = 1e-6;
 /// Where the mean of the corners' normals faces away from the eye though the triangle does not, it
 /// is turned to this cosine.
 const FACING: f64 = 1e-2;
-
-impl Scene {
-    /// The mesh that drafts show, at so many cells along the longest side. The one that was last
-    /// asked for is kept.
-    pub(super) fn draft_mesh(&self, cells: u32, run: &Run) -> Result<Arc<DraftMesh>, RenderError> {
-        if self.is_empty() {
-            return Ok(Arc::default());
-        }
-        let kept = || self.draft.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((count, mesh)) = &*kept()
-            && *count == cells
-        {
-            return Ok(mesh.clone());
-        }
-        let subject = Subject { program: self.program(), bounds: self.bounds(), palette: None, whole: None };
-        let mesh = |thin, run: &Run| {
-            let cell = CellSize::LongestSide(cells);
-            subject.mesh(&MeshSettings { cell, thin, owners: true, ..MeshSettings::default() }, run)
-        };
-        let [to_mesh, to_refine] = run.stages([0.5, 0.5]);
-        let mut found = mesh(ThinFeatures::Ignore, &to_mesh)?;
-        if found.possibly_lost() > 0 {
-            found = mesh(ThinFeatures::Refine { halvings: HALVINGS }, &to_refine)?;
-        }
-        let is_closed = ClosedMesh::new(&found).is_ok();
-        let mesh = Arc::new(DraftMesh { mesh: found, is_closed });
-        *kept() = Some((cells, mesh.clone()));
-        Ok(mesh)
-    }
-}
-
-/// What drafts show of a scene.
-#[derive(Default)]
-pub(super) struct DraftMesh {
-    mesh: Mesh,
-    /// Whether its front faces hide the others.
-    is_closed: bool,
-}
 
 /// A mesh in a picture.
 pub(super) struct Draft<'a> {

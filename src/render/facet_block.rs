@@ -18,7 +18,7 @@ pub(super) const SIDE: usize = 8;
 pub(super) const NODES: usize = SIDE + 1;
 
 /// A surface does not hide from itself what is nearer than this, in cells.
-const BIAS: f32 = 2.0;
+pub(super) const BIAS: f32 = 2.0;
 
 /// Tops are this much higher, in cells, than they need to be without rounding.
 const SLACK: f32 = 1e-3;
@@ -26,6 +26,11 @@ const SLACK: f32 = 1e-3;
 /// Where the values at a cell's corners are off a plane by more than this, in cells, a crease may
 /// pass, or the surface curves.
 const FLAT: f32 = 0.03;
+
+/// Planes that are off by more than this, in cells, say little of where the surface is: in cells
+/// that a blade thinner than they are passes, or where the value jumps. They hide nothing that is
+/// nearer than [`BIAS`].
+pub(super) const VAGUE: f32 = 0.25;
 
 /// The surface is in no cell all of whose corners are farther from it than this, in cells.
 const NEAR: f32 = 0.87;
@@ -137,7 +142,9 @@ impl Block {
                     let (value, slopes) = slopes(node);
                     Corner { at: at.into(), value, slopes }
                 };
-                CreasedCell::new(&corners(cell).map(corner), off)
+                let is_vague = is_crossed && off > VAGUE;
+                let vague = || is_vague.then(|| CreasedCell::vague(plane));
+                CreasedCell::new(&corners(cell).map(corner), off).or_else(vague)
             });
             let facet = match crease {
                 Some(crease) if is_crossed || crease.reaches(middle([x, y, z])) => {
@@ -163,6 +170,12 @@ impl Block {
     fn facets(&self) -> impl Iterator<Item = (Vec3, Vec4)> {
         let places = (0..SIDE * SIDE * SIDE).filter(|at| self.cells[at / 64] >> (at % 64) & 1 == 1);
         places.map(|at| middle(place(at))).zip(self.facets.iter().copied())
+    }
+
+    /// How many cells have more to tell than a plane.
+    #[cfg(test)]
+    pub(super) fn crease_count(&self) -> usize {
+        self.creases.len()
     }
 
     /// The middle of each cell that is not empty, and where a ray gets inside in it between two

@@ -13,6 +13,8 @@
 
 use glam::{Vec3, Vec4};
 
+use super::facet_block::{BIAS, VAGUE};
+
 /// Planes of a cell.
 const MOST: usize = 4;
 
@@ -42,6 +44,8 @@ pub(super) struct CreasedCell {
     planes: [Vec4; MOST],
     count: u8,
     is_convex: bool,
+    /// Whether the planes say little of where the surface is.
+    is_vague: bool,
 }
 
 /// Where a ray gets inside.
@@ -57,7 +61,7 @@ pub(super) enum Meeting {
 impl CreasedCell {
     /// That of a cell whose values differ from a plane's by `off` at most. `None` if it is none.
     pub(super) fn new(corners: &[Corner; 8], off: f32) -> Option<CreasedCell> {
-        let mut crease = CreasedCell { planes: [Vec4::ZERO; MOST], count: 0, is_convex: true };
+        let mut crease = CreasedCell { planes: [Vec4::ZERO; MOST], count: 0, is_convex: true, is_vague: false };
         let mut sums = [(Vec4::ZERO, Vec3::ZERO); MOST];
         for corner in corners {
             let direction = corner.slopes.normalize_or_zero();
@@ -81,8 +85,17 @@ impl CreasedCell {
             |crease: &CreasedCell| corners.iter().map(|c| (crease.value(c.at) - c.value).abs()).fold(0.0, f32::max);
         let hollow = CreasedCell { is_convex: false, ..crease.clone() };
         let (as_convex, as_hollow) = (off_by(&crease), off_by(&hollow));
-        let best = if as_convex <= as_hollow { crease } else { hollow };
-        (best.count > 1 && as_convex.min(as_hollow) < BETTER * off).then_some(best)
+        let mut best = if as_convex <= as_hollow { crease } else { hollow };
+        let least = as_convex.min(as_hollow);
+        best.is_vague = least > VAGUE;
+        (best.count > 1 && least < BETTER * off).then_some(best)
+    }
+
+    /// That of a cell of which a single plane says little, and a few do not either.
+    pub(super) fn vague(plane: Vec4) -> CreasedCell {
+        let mut planes = [Vec4::ZERO; MOST];
+        planes[0] = plane;
+        CreasedCell { planes, count: 1, is_convex: true, is_vague: true }
     }
 
     pub(super) fn planes(&self) -> &[Vec4] {
@@ -112,7 +125,16 @@ impl CreasedCell {
     /// from the block's corner.
     #[inline]
     pub(super) fn meet(&self, from: Vec4, direction: Vec4, t: f32, end: f32) -> Meeting {
-        if self.is_convex { self.meet_all(from, direction, t, end) } else { self.meet_any(from, direction, t, end) }
+        let met = if self.is_convex {
+            self.meet_all(from, direction, t, end)
+        } else {
+            self.meet_any(from, direction, t, end)
+        };
+        match met {
+            // A ray from the surface in it, or beside it, would meet that surface itself.
+            Meeting::Enters(at) if self.is_vague && at < BIAS => Meeting::None,
+            met => met,
+        }
     }
 
     fn meet_all(&self, from: Vec4, direction: Vec4, t: f32, end: f32) -> Meeting {

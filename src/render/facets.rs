@@ -411,4 +411,47 @@ mod tests {
         }
         assert!(met > 500 && missed > 500 && off < 8, "{met} {missed} {off}");
     }
+
+    /// How many points of a solid have a ray that meets something near which is not there, and of
+    /// how many.
+    fn specks(solid: &Solid, cells: u32) -> (usize, usize) {
+        let facets = facets(solid, cells);
+        let size = 0.5 * solid.bounds().unwrap().longest_side();
+        let (mut wrong, mut count) = (0, 0);
+        for i in 1..4000 {
+            let at = |step: f64| (0.5 + step * f64::from(i)).fract() * 2.0 - 1.0;
+            let start = DVec3::new(at(0.819_173), at(0.671_043), 0.7 * at(0.549_700)).normalize_or(DVec3::X);
+            let aim = DVec3::new(at(0.357_403), at(0.211_324), at(0.733_019)) * 0.7;
+            let way = (aim - 3.0 * start).normalize_or(DVec3::X);
+            let Some(seen) = solid.raycast(3.0 * size * start, way).unwrap() else { continue };
+            let normal = seen.normal.normalize_or_zero();
+            if normal == DVec3::ZERO {
+                continue;
+            }
+            count += 1;
+            let from = seen.point + 2e-7 * size * normal;
+            let (t, b) = normal.any_orthonormal_pair();
+            let is_wrong = |k: u32| {
+                let around = glam::DVec2::from_angle(2.4 * f64::from(k)) * (f64::from(k) / 16.0 + 0.03).sqrt();
+                let up = (1.0 - around.length_squared()).max(0.0).sqrt().max(0.02);
+                let direction = (around.x * t + around.y * b + up * normal).normalize();
+                let found = hit(&facets, from, direction);
+                let exact = || solid.raycast(from, direction).unwrap().map_or(f64::INFINITY, |hit| hit.distance);
+                found < 2.0 * facets.cell && exact() > found + 4.0 * facets.cell
+            };
+            wrong += usize::from((0..16).any(is_wrong));
+        }
+        (wrong, count)
+    }
+
+    #[test]
+    fn blades_do_not_hide_from_themselves() {
+        let g = crate::Gielis::new;
+        let blades = Solid::from(crate::Supershape::new(g(5.0, 0.3, 0.3, 0.3), g(4.0, 2.0, 2.0, 2.0)));
+        let (wrong, count) = specks(&blades, 200);
+        assert!(count > 500 && wrong < count / 400, "{wrong} of {count}");
+        // Where a plane tells where the surface is, there is nothing else.
+        let ball = facets(&Solid::sphere(1.0), 12);
+        assert!(ball.surface.iter().all(|block| block.crease_count() == 0));
+    }
 }

@@ -10,6 +10,7 @@ mod beside;
 mod cells;
 mod contour;
 mod draft;
+mod draft_mesh;
 mod empty_space;
 mod exact;
 mod extent;

@@ -365,14 +365,17 @@ impl Picture<'_> {
         };
         let open = |k: usize| open.get(k).copied().unwrap_or(Visibility::FULL);
         let shares_light = self.obstacles.is_none();
+        // What is behind a row of rays is the same all along it.
+        let row = |k: u32| self.behind(f64::from(band.top) + (f64::from(k) + 0.5) / f64::from(n));
+        let behind: Vec<Vec4> =
+            if places.is_empty() { Vec::new() } else { (0..n * (band.end() - band.top)).map(row).collect() };
         Ok(jobs::in_order(places.len(), |number| {
-            let top = f64::from(band.top + places[number] as u32 / band.width);
+            let behind = &behind[places[number] / band.width as usize * n as usize..];
             let (mut sum, mut known) = (Vec4::ZERO, [(&Spot::NOTHING, Vec4::ZERO); KNOWN]);
             for (k, spot) in fine.spots[number * n2..][..n2].iter().enumerate() {
                 let found = known.iter().find(|(other, _)| shares_light && spot.looks_like(other));
                 let light = found.map(|(_, light)| *light).unwrap_or_else(|| {
-                    let down = (f64::from(k as u32 / n) + 0.5) / f64::from(n);
-                    let light = self.shade(spot, open(number * n2 + k), || self.behind(top + down));
+                    let light = self.shade(spot, open(number * n2 + k), || behind[k / n as usize]);
                     known.rotate_right(1);
                     known[0] = (spot, light);
                     light

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::cells::Cells;
-use super::draft::DraftMesh;
+use super::draft_mesh::DraftMesh;
 use super::extent::{corners, lowest};
 use super::facets::Facets;
 use super::gbuffer::{GBuffer, Surface, Window};

@@ -57,8 +57,9 @@ pub struct RenderSettings {
     /// Whether the surface itself is drawn, or a mesh of it. Default: [`Quality::Fine`].
     pub quality: Quality,
     /// The cells of the mesh that a [draft](Quality::Draft) shows, along the longest side of the
-    /// solid's box, 4 to 1024; where the mesh says that something may be thinner than a cell, cells
-    /// of a quarter of the size are tried. Default: 64.
+    /// solid's box, 4 to 1024. If something may be thinner than a cell, all are halved, and halved
+    /// again, as long as the mesh takes no more of them than one of a plain solid would:
+    /// [`Scene::draft_mesh`](crate::Scene::draft_mesh) tells what it shows. Default: 64.
     pub draft_cells: u32,
     /// To look into the solid: the plane that it is cut by. What is on the side that the plane's
     /// [normal](Plane::normal) points to is taken away, so that of [`Plane::xz`] the section is
@@ -282,6 +283,11 @@ const MOST_CELLS: u32 = 1024;
 /// The largest number of samples along a pixel's side.
 const MOST_SAMPLES: u32 = 8;
 
+/// Whether a draft may have so many cells.
+pub(super) fn check_cells(cells: u32) -> Result<(), RenderError> {
+    if (LEAST_CELLS..=MOST_CELLS).contains(&cells) { Ok(()) } else { Err(setting("draft_cells", cells, "4 to 1024")) }
+}
+
 /// The error of a setting.
 pub(super) fn setting(setting: &'static str, value: impl std::fmt::Display, allowed: &'static str) -> RenderError {
     RenderError::Setting { setting, value: value.to_string(), allowed }
@@ -317,9 +323,7 @@ impl RenderSettings {
         if !(1..=MOST_SAMPLES).contains(&self.samples) {
             return Err(setting("samples", self.samples, "1 to 8"));
         }
-        if !(LEAST_CELLS..=MOST_CELLS).contains(&self.draft_cells) {
-            return Err(setting("draft_cells", self.draft_cells, "4 to 1024"));
-        }
+        check_cells(self.draft_cells)?;
         for (name, paint) in [("paint.roughness", Some(self.paint)), ("cut_paint.roughness", self.cut_paint)] {
             if let Some(Paint { roughness, .. }) = paint
                 && !(0.0..=1.0).contains(&roughness)

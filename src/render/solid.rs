@@ -4,7 +4,8 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::draft::{Draft, DraftMesh};
+use super::draft::Draft;
+use super::draft_mesh::DraftMesh;
 use super::materials::Materials;
 use super::occlusion::Obstacles;
 use super::picture::{Picture, Pixel};
@@ -192,7 +193,7 @@ impl Scene {
             None => None,
         };
         let scene = cut.as_deref().unwrap_or(self);
-        let draft = if is_draft { Some(scene.draft_mesh(settings.draft_cells, &to_mesh)?) } else { None };
+        let draft = if is_draft { Some(scene.shown(settings.draft_cells, &to_mesh)?) } else { None };
         run.report(1.0);
         Ok(Subject { whole: self, cut, draft })
     }

@@ -17,7 +17,18 @@ fn plate() -> Solid {
 
 /// Seen from above; nothing but the light that is asked for.
 fn picture(solid: &Solid, softness: f64, (shadows, occlusion): (bool, bool)) -> Image<[f32; 4]> {
-    let camera = Camera::orthographic([0.0, 0.0, 50.0], DVec3::ZERO, DVec3::Y, f64::from(SIDE) / SCALE);
+    picture_from([0.0, 0.0, 50.0], DVec3::Y, solid, softness, (shadows, occlusion))
+}
+
+/// The same from another side.
+fn picture_from(
+    eye: [f64; 3],
+    up: DVec3,
+    solid: &Solid,
+    softness: f64,
+    (shadows, occlusion): (bool, bool),
+) -> Image<[f32; 4]> {
+    let camera = Camera::orthographic(eye, DVec3::ZERO, up, f64::from(SIDE) / SCALE);
     let settings = RenderSettings {
         width: SIDE,
         height: SIDE,
@@ -96,5 +107,23 @@ fn corners_are_evenly_dark() {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
         assert!(deviation < 0.012 * mean, "{pixels} pixels off: {:.1} % of the light", 100.0 * deviation / mean);
+    }
+}
+
+/// A formula that jumps, clipped to a box: of its front no part hides light from another.
+#[cfg(feature = "formula")]
+#[test]
+fn faces_that_end_at_jumps_are_evenly_lit() {
+    let (x, _, z) = fidget::context::Tree::axes();
+    let half = DVec3::new(20.0, 12.0, 12.0);
+    let saw = Solid::formula(&(z - x.modulo(8.0)), rvachev::Bounds::from_center(DVec3::ZERO, half))
+        & Solid::cuboid(1.9 * half);
+    for light in [(true, false), (false, true)] {
+        let image = picture_from([0.0, -50.0, 0.0], DVec3::Z, &saw, 10.0, light);
+        let mut lit: Vec<f32> = image.pixels().iter().map(|p| p[0]).filter(|light| *light > 1e-3).collect();
+        lit.sort_unstable_by(f32::total_cmp);
+        let usual = lit[lit.len() / 2];
+        let dark = lit.iter().filter(|light| **light < 0.97 * usual).count();
+        assert!(lit.len() > 50_000 && dark == 0, "{dark} of {} pixels are dark", lit.len());
     }
 }

@@ -12,6 +12,8 @@ use rvachev_num::figures;
 pub(crate) struct Findings {
     /// The side of a cell, in length units; 0 if the mesh was not extracted.
     pub(crate) cell: f64,
+    /// How many blocks of cells the surface may cross.
+    pub(crate) blocks: usize,
     /// See [`Mesh::clamped_vertices`].
     pub(crate) clamped_vertices: Option<usize>,
     /// See [`Mesh::possibly_lost`].
@@ -116,7 +118,7 @@ impl Mesh {
     /// ```
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        let Findings { cell, clamped_vertices, possibly_lost, lost_at, deviation, thin } = &self.findings;
+        let Findings { cell, clamped_vertices, possibly_lost, lost_at, deviation, thin, .. } = &self.findings;
         let mut warnings = Vec::new();
         let is_extracted = clamped_vertices.is_some();
         let is_empty = is_extracted && self.triangles.is_empty();

@@ -26,6 +26,7 @@ impl Parts<'_> {
     fn findings(&self, lattice: &Lattice) -> Findings {
         Findings {
             cell: lattice.step(),
+            blocks: self.blocks.len(),
             clamped_vertices: Some(self.clamped),
             possibly_lost: self.lost.len(),
             lost_at: self.lost.iter().map(|block| lattice.region(*block, BLOCK).center()).collect(),
