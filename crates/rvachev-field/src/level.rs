@@ -158,11 +158,15 @@ mod tests {
     fn levels_are_in_their_layers() {
         let fields: [&dyn AnyField; 3] =
             [&Sphere { radius: 1.0 }, &Torus { radius: 1.0, tube: 0.4 }, &Cuboid { size: DVec3::new(1.5, 1.0, 0.7) }];
-        let random = |n: u32| f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11)) / 2f64.powi(32);
+        let random = |n: u32| {
+            let mixed = u64::from(n + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            ((mixed ^ mixed >> 31) >> 11) as f64 / 2f64.powi(53)
+        };
         let vector = |n: u32| DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2)) * 2.0 - 1.0;
         for (number, field) in fields.into_iter().enumerate() {
             let (mut told, mut thin, mut turned) = (0, 0, 0);
-            for n in 0..4000u32 {
+            for n in 0..20_000u32 {
                 let size = 0.005 * f64::powi(2.0, (n % 6) as i32);
                 let axes = DMat3::from_cols(vector(90 * n), vector(90 * n + 1), vector(90 * n + 2)) * size;
                 let level = [0.0, 0.1, -0.2][(n % 3) as usize];
@@ -180,7 +184,7 @@ mod tests {
                             assert!(at >= *low || value(p) < 1e-12, "{number} {n}: {} below", value(p));
                             let rise = DVec3::from_array(field.dual(Dual::point(p.to_array())).gradient());
                             // Where the level is near enough, its direction is that of the value's rise there.
-                            if value(p).abs() < 1e-3 * size {
+                            if value(p).abs() < 0.02 * size {
                                 assert!(rise.dot(*normal) > least_cosine - 1e-2, "{number} {n}: {least_cosine}");
                                 turned += usize::from(*least_cosine > 0.9);
                             }
@@ -188,7 +192,11 @@ mod tests {
                         _ => unreachable!("there is one at most"),
                     }
                 }
-                if let [Layer { low, high, .. }] = layers[..] {
+                // In a zone that is small beside what curves, and beside how far the level is.
+                let is_small = zone.radius() < 0.2 * if level == 0.0 { 0.4 } else { level.abs() };
+                if let [Layer { low, high, .. }] = layers[..]
+                    && is_small
+                {
                     told += 1;
                     thin += usize::from(high - low < 0.5 * zone.radius());
                 }
