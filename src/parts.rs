@@ -55,11 +55,11 @@
 //!         .translate([0.0, 0.0, z])
 //!         .named("cut cylinder 1");
 //!     // hole, ⌀ 7, through, 6 of them on a circle, ⌀ 44; 9.6 % of the surface
-//!     let cut_cylinder_3 = Solid::cylinder(3.5, 10.0)
+//!     let cut_cylinder_2 = Solid::cylinder(3.5, 10.0)
 //!         .translate([22.0, 0.0, 0.0])
-//!         .named("cut cylinder 3");
+//!         .named("cut cylinder 2");
 //!     let union = cylinder_1.union(cylinder_2, RFunction::MIN_MAX);
-//!     let parts = [cut_cylinder_1, cut_cylinder_3.repeat_polar(6)];
+//!     let parts = [cut_cylinder_1, cut_cylinder_2.repeat_polar(6)];
 //!     union.difference_all(parts, RFunction::MIN_MAX)
 //! }
 //! "#
@@ -98,7 +98,7 @@
 //!     let offset = 22.225;
 //!     let length = 12.7;
 //!     let cut_cylinder_1_length = 25.4;
-//!     let cut_cylinder_3_length = 38.1;
+//!     let cut_cylinder_2_length = 38.1;
 //!     let cut_cylinder_5_length = 3.175;
 //!     // block, 101.6 × 63.5 × 57.15; 58.7 % of the surface
 //!     let box_1 = Solid::cuboid([101.6, 63.5, 57.15])
@@ -113,23 +113,23 @@
 //!         .rotate_x(deg(-90.0))
 //!         .translate([0.0, cut_cylinder_1_length, 31.75])
 //!         .named("cut cylinder 1");
-//!     let offset_2 = [-cut_cylinder_3_length, -offset, 5.55625];
+//!     let offset_2 = [-cut_cylinder_2_length, -offset, 5.55625];
 //!     // hole, ⌀ 12.7, 3.175 deep, 3 × 2 of them in a grid, 38.1 × 25.4 apart; 4.6 % of the surface
-//!     let cut_cylinder_3 = Solid::cylinder(6.35, 4.7625)
+//!     let cut_cylinder_2 = Solid::cylinder(6.35, 4.7625)
 //!         .translate(offset_2)
-//!         .named("cut cylinder 3");
-//!     let offset_3 = [cut_cylinder_3_length, cut_cylinder_5_length, -1.5875];
+//!         .named("cut cylinder 2");
+//!     let offset_3 = [cut_cylinder_2_length, cut_cylinder_5_length, -1.5875];
 //!     // hole, ⌀ 6.35, through, 3 × 2 of them in a grid, 38.1 × 25.4 apart; 4.0 % of the surface
 //!     let cut_cylinder_5 = Solid::cylinder(cut_cylinder_5_length, length)
 //!         .translate(offset_3)
 //!         .named("cut cylinder 5");
-//!     let cut_cylinder_3s = cut_cylinder_3
-//!         .repeat_linear(3, [cut_cylinder_3_length, 0.0, 0.0])
+//!     let cut_cylinder_2s = cut_cylinder_2
+//!         .repeat_linear(3, [cut_cylinder_2_length, 0.0, 0.0])
 //!         .repeat_linear(2, [0.0, cut_cylinder_1_length, 0.0]);
 //!     let cut_cylinder_5s = cut_cylinder_5
-//!         .repeat_linear(3, [-cut_cylinder_3_length, 0.0, 0.0])
+//!         .repeat_linear(3, [-cut_cylinder_2_length, 0.0, 0.0])
 //!         .repeat_linear(2, [0.0, -cut_cylinder_1_length, 0.0]);
-//!     let parts = [cut_box_1, cut_cylinder_1, cut_cylinder_3s, cut_cylinder_5s];
+//!     let parts = [cut_box_1, cut_cylinder_1, cut_cylinder_2s, cut_cylinder_5s];
 //!     box_1.difference_all(parts, RFunction::MIN_MAX)
 //! }
 //! "#
