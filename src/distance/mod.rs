@@ -37,7 +37,7 @@ use std::sync::Arc;
 
 use self::surface::FromMeshes;
 use crate::error::{MeshingError, RenderError};
-use crate::eval::{CompileError, Compiled, Surface, Wanted, compile, surface};
+use crate::eval::{CompileError, Compiled, Surface, Wanted, compile, compile_and_bound, surface};
 use crate::{Bounds, Run, Solid, SolidError};
 
 /// The programs of a solid, compiled on first use and kept with it; its box is found when asked for.
@@ -51,10 +51,7 @@ pub(crate) fn compiled(solid: &Solid) -> Result<Arc<Compiled>, SolidError> {
 
 /// The same and the box on the threads of a run, which may be cancelled.
 pub(crate) fn compiled_with(solid: &Solid, run: &Run) -> Result<Arc<Compiled>, CompileError> {
-    let [to_compile, to_bound] = run.stages([0.6, 0.4]);
-    let programs = compile(solid, &FromMeshes, &to_compile)?;
-    programs.bounds_with(&to_bound)?;
-    Ok(programs)
+    compile_and_bound(solid, &FromMeshes, run)
 }
 
 /// The surface of a bounded solid as patches, found on first use and kept with it.

@@ -90,13 +90,13 @@ impl Compiled {
     /// The axis along which the solid is a column without end: the one axis that its box is
     /// infinite along, where its value does not depend on it.
     pub(crate) fn flat_axis(&self) -> Option<usize> {
-        if self.bounds().is_empty() || self.bounds().is_finite() {
+        let mut part = self.bounds();
+        if part.is_empty() || part.is_finite() {
             return None;
         }
-        let size = self.bounds().size();
+        let size = part.size();
         let mut open = (0..3).filter(|axis| size[*axis] == f64::INFINITY);
         let axis = open.next().filter(|_| open.next().is_none())?;
-        let mut part = self.bounds();
         let reach = (0..3).filter(|other| *other != axis).map(|other| size[other]).fold(0.0, f64::max);
         (part.min[axis], part.max[axis]) = (-reach, reach);
         self.surface.is_even_along(axis, &part).then_some(axis)
@@ -125,6 +125,18 @@ pub(crate) fn compile(
     }
 }
 
+/// The same, and its box is found.
+pub(crate) fn compile_and_bound(
+    solid: &Solid,
+    source: &'static dyn DistanceSource,
+    run: &Run,
+) -> Result<Arc<Compiled>, CompileError> {
+    let [to_compile, to_bound] = run.stages([WALK, 1.0 - WALK]);
+    let programs = compile(solid, source, &to_compile)?;
+    programs.bounds_with(&to_bound)?;
+    Ok(programs)
+}
+
 /// Compiles a solid, and before it what is compiled by itself, however deep it is.
 fn compile_anew(solid: &Solid, source: &'static dyn DistanceSource, run: &Run) -> Result<Arc<Compiled>, CompileError> {
     let mut exact = Exactness::default();
@@ -138,17 +150,18 @@ fn compile_anew(solid: &Solid, source: &'static dyn DistanceSource, run: &Run) -
         let end = done + work.effort();
         match work {
             Work::Measure(node) => measure(node, &exact, source, &run.stage(done / all, end / all))?,
-            Work::Compile(part) if kept(part).is_some() => {}
             Work::Compile(part) => {
                 let [to_walk, to_bound] = run.stage(done / all, end / all).stages([WALK, 1.0 - WALK]);
-                let compiled = Compiler::new(&exact, &to_walk)
-                    .compile(part)
-                    .map_err(|error| of_whole(solid, &exact, run, error))?;
-                // What is made of it asks for its box.
-                if part.address() != solid.address() {
-                    compiled.bounds_with(&to_bound)?;
+                if kept(part).is_none() {
+                    let compiled = Compiler::new(&exact, &to_walk)
+                        .compile(part)
+                        .map_err(|error| of_whole(solid, &exact, run, error))?;
+                    let _ = part.compiled().set(Arc::new(compiled));
                 }
-                let _ = part.compiled().set(Arc::new(compiled));
+                // What is made of it asks for its box.
+                if let Some(programs) = kept(part).filter(|_| part.address() != solid.address()) {
+                    programs.bounds_with(&to_bound)?;
+                }
             }
         }
         done = end;
@@ -410,5 +423,34 @@ impl<'e> Compiler<'e> {
         let outside = if inner.sides.outside.is_finite() { outward(&inner.sides.outside) } else { Bounds::ALL };
         let sides = Sides { inside, outside };
         Ok(Built { sides, swell: inner.swell.mapped(outward), ..inner })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::distance::{compiled, compiled_with};
+    use crate::rad;
+
+    #[test]
+    fn values_do_not_wait_for_the_box() {
+        let bent = || Solid::superellipsoid([0.5, 0.7, 2.0], 0.4, 0.6).twist(rad(0.6)).bend(0.3, rad(0.5));
+        let knows_box = |solid: &Solid| kept(solid).is_some_and(|programs| programs.bounds.get().is_some());
+        let solid = bent();
+        assert!(solid.value(DVec3::ZERO).unwrap() > 0.0 && !knows_box(&solid));
+        let box_of = solid.bounds().unwrap();
+        assert!(knows_box(&solid) && box_of == compiled_with(&bent(), &Run::default()).unwrap().bounds());
+        // What is made of it finds it by its own run, also if it was compiled before.
+        let solid = bent();
+        compiled(&solid).unwrap();
+        compiled(&solid.offset(0.1)).unwrap();
+        assert!(knows_box(&solid));
+        let run = Run::default();
+        run.cancel.cancel();
+        let solid = bent();
+        compiled(&solid).unwrap();
+        assert!(compiled_with(&solid, &run).is_err() && !knows_box(&solid));
     }
 }

@@ -83,7 +83,7 @@ pub(crate) use atoms::{Atom, Number};
 pub(crate) use bend::Bend;
 pub(crate) use bracket::Bracket;
 pub(crate) use bytes::Counted;
-pub(crate) use compile::{Compiled, compile};
+pub(crate) use compile::{Compiled, compile, compile_and_bound};
 pub(crate) use composite::{as_leaf, with_evaluator};
 pub(crate) use crossing::distance;
 pub(crate) use partial::Partial;

@@ -30,9 +30,6 @@ const MOST: usize = 1200;
 /// Boxes are this part of the square of their width high: ranges over wider ones tell too little.
 const FLAT: f64 = 8.0;
 
-/// So many points are tried in a part.
-const LOOKS: usize = 3;
-
 /// A leaf whose values are searched for counts as so many.
 const SEARCHED: usize = 50;
 
@@ -50,32 +47,27 @@ pub(super) fn narrowed(bounds: Bounds, program: &Program) -> Option<Part> {
         Region::Outside => None,
         Region::Inside => Some(Part { bounds, program: program.clone(), is_inside: true }),
         Region::Surface(program) => {
-            let slopes = slopes(&bounds, &program);
-            let bounds = slopes.map_or(bounds, |slopes| clipped(&bounds, &program, slopes));
+            let bounds = clipped(&bounds, &program);
             (!bounds.is_empty()).then_some(Part { bounds, program, is_inside: false })
         }
     }
 }
 
-/// The slopes of the whole in a box: behind deformations they tell more than the ranges of the
-/// leaves.
-fn slopes(bounds: &Bounds, program: &Program) -> Option<[Interval; 3]> {
-    let is_smooth = |node: &Node| node.valued_by().is_none_or(|leaf| program.instance(leaf).field.is_formula());
-    if program.frames.is_empty() || !bounds.is_finite() || program.jumps() || !program.nodes.iter().all(is_smooth) {
-        return None;
-    }
-    let hull = [0, 1, 2].map(|axis| Interval::new(bounds.min[axis], bounds.max[axis]));
-    Some(program.evaluate(Dual::point(hull), &mut Vec::new()).gradient())
-}
-
-/// The part of a box beyond which the value in the middle and the slopes show that nothing is inside.
+/// The part of a box beyond which the value in the middle and the slopes of the whole show that
+/// nothing is inside: behind deformations that tells more than the ranges of the leaves.
 ///
 /// ```text
 ///     f(x) ≤ f(c) + Σ max sᵢ (xᵢ − cᵢ)    of slopes s within the box, about its middle c
 /// ```
-fn clipped(bounds: &Bounds, program: &Program, slopes: [Interval; 3]) -> Bounds {
+fn clipped(bounds: &Bounds, program: &Program) -> Bounds {
     /// More than rounding, in proportion.
     const MARGIN: f64 = 1e-12;
+    let is_smooth = |node: &Node| node.valued_by().is_none_or(|leaf| program.instance(leaf).field.is_formula());
+    if program.frames.is_empty() || !bounds.is_finite() || program.jumps() || !program.nodes.iter().all(is_smooth) {
+        return *bounds;
+    }
+    let hull = [0, 1, 2].map(|axis| Interval::new(bounds.min[axis], bounds.max[axis]));
+    let slopes = program.evaluate(Dual::point(hull), &mut Vec::new()).gradient();
     let (middle, half) = (bounds.center(), 0.5 * bounds.size());
     let rises = DVec3::from_array([0, 1, 2].map(|axis| slopes[axis].magnitude() * half[axis]));
     let rise = rises.element_sum();
@@ -195,8 +187,8 @@ impl Side {
     /// The axis across which a box is halved. A surface that is farthest in a point falls with the
     /// square of the distance from there, so that flat boxes hold it best.
     fn across(&self, bounds: &Bounds) -> usize {
-        let [a, b] = [(self.axis + 1) % 3, (self.axis + 2) % 3];
         let part = (bounds.size() / self.width.max(DVec3::splat(f64::MIN_POSITIVE))).to_array();
+        let [a, b] = [(self.axis + 1) % 3, (self.axis + 2) % 3];
         let beside = if part[a] >= part[b] { a } else { b };
         if part[self.axis] >= FLAT * part[beside] * part[beside] { self.axis } else { beside }
     }
@@ -209,41 +201,24 @@ impl Side {
         Candidate { reach, size: part.bounds.size().length_squared(), part }
     }
 
-    /// Looks for a point of a part that is inside and far out, as its slope in the middle tells.
-    ///
-    /// ```text
-    ///     direction        where the part's top is inside, by the slope, the point there that is
-    ///      ^   ___x_       nearest beside the middle; else the uppermost one that is inside
-    ///      |  |  /  |
-    ///      |  | c   |
-    /// ```
+    /// Looks for a point that is inside on the line through the middle of a part.
     fn look(&mut self, part: &Part, reach: f64) {
-        let (middle, half) = (part.bounds.center(), part.bounds.half_extents());
-        let (value, slope) = part.program.gradient(middle);
-        let (rise, top) = (self.direction.dot(slope), reach - self.direction.dot(middle));
-        let beside = slope - rise * self.direction;
-        let gain = beside.abs().dot(half);
-        let at_top = value + rise * top;
-        // What the linear field lacks at the top is gained beside the middle, or by going down.
-        let part_of = if gain > 0.0 { (-at_top / gain).clamp(0.0, 1.0) } else { 0.0 };
-        let mut point = middle + part_of * half * beside.map(f64::signum);
-        let mut up = if at_top + gain >= 0.0 { top } else { (value + gain) / -rise };
-        for _ in 0..LOOKS {
-            let farthest = self.direction.dot(point) + up;
-            // Further down than the part no slope tells.
-            if farthest.is_nan() || farthest <= self.reached || up < -top {
-                return;
-            }
-            let at = point + self.direction * up;
-            let here = part.program.value(at);
-            if here > 0.0 {
-                self.reached = farthest;
-                return;
-            }
-            // Back to where the slope has the surface, and as much again.
-            let by = 2.0 * here / rise;
-            if rise < 0.0 { up -= by } else { point = point.lerp(middle, 0.5) }
+        const STEPS: usize = 8;
+        let middle = part.bounds.center();
+        let along = self.direction.dot(middle);
+        let is_inside = |by: f64| part.is_inside || part.program.value(middle + self.direction * by) > 0.0;
+        let (mut inside, mut beyond) = (0.0, reach - along);
+        if !is_inside(inside) {
+            return;
         }
+        for _ in 0..STEPS {
+            if along + beyond <= self.reached {
+                return;
+            }
+            let by = 0.5 * (inside + beyond);
+            if is_inside(by) { inside = by } else { beyond = by }
+        }
+        self.reached = self.reached.max(along + inside);
     }
 }
 

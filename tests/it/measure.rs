@@ -55,6 +55,7 @@ fn leaves_of_the_catalogue_agree_with_quadrature_and_meshes() {
             closed += 1;
             let by_field = without_form(&moved).measure(tolerance).unwrap();
             assert!(by_field.volume_error <= tolerance * by_field.volume, "{name}: {by_field}");
+            assert!(by_field.area_error <= tolerance * by_field.area, "{name}: {by_field}");
             assert_agree(name, &report, &by_field);
         }
         let mesh = moved.mesh(&MeshSettings { cell: CellSize::LongestSide(64), ..MeshSettings::default() }).unwrap();
