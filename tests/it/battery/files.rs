@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use glam::Vec3;
-use rvachev::{Mesh, Solid};
+use rvachev::{Mesh, Run, Solid};
 
 use super::make::bounded;
 use super::shapes::meshed;
+use super::short;
 use super::{Fault, fault};
 
 fn corners(mesh: &Mesh) -> Vec<[Vec3; 3]> {
@@ -15,7 +16,7 @@ fn corners(mesh: &Mesh) -> Vec<[Vec3; 3]> {
 
 pub fn check(solid: &Solid) -> Result<(), Fault> {
     let Some(solid) = &bounded(solid) else { return Ok(()) };
-    let mesh = meshed(solid, 12)?;
+    let Some(mesh) = meshed(solid, 12, &Run { threads: 1, ..short() })? else { return Ok(()) };
     if mesh.triangles().is_empty() {
         return Ok(());
     }

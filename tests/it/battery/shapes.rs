@@ -1,10 +1,14 @@
 //! Meshes, slices, rays and closest points of one solid, against its values at many points.
 
 use glam::{DVec2, DVec3};
-use rvachev::{CellSize, MeshSettings, Plane, PlaneBounds, Polyline, Run, Solid, program::Program};
+use rvachev::{
+    CellSize, ContourSettings, MeshSettings, Plane, PlaneBounds, Polyline, Run, Solid,
+    error::{MeshingError, PrepareError, RenderError},
+    program::Program,
+};
 
 use super::make::bounded;
-use super::{Fault, fault, is_late};
+use super::{Fault, fault, is_late, short};
 use crate::support::{Random, frame_of};
 
 /// What is asked, and how large it is.
@@ -14,22 +18,28 @@ struct Subject<'a> {
     frame: rvachev::Bounds,
     size: f64,
     random: Random,
+    /// What is not answered when it is over is not asked.
+    run: Run,
 }
 
 pub fn check(solid: &Solid) -> Result<(), Fault> {
     let Some(solid) = &bounded(solid) else { return Ok(()) };
     let program = solid.surface_program().unwrap();
     let frame = frame_of(solid);
-    let mut subject = Subject { solid, program, frame, size: frame.longest_side(), random: Random::new(23) };
+    let run = Run { threads: 1, ..short() };
+    let mut subject = Subject { solid, program, frame, size: frame.longest_side(), random: Random::new(23), run };
     let questions = [Subject::mesh, Subject::slice, Subject::rays, Subject::closest];
     questions.into_iter().try_for_each(|ask| if is_late() { Ok(()) } else { ask(&mut subject) })
 }
 
-/// The mesh of a solid in cells of so many to the longest side.
-pub fn meshed(solid: &Solid, cells: u32) -> Result<rvachev::Mesh, Fault> {
+/// The mesh of a solid in cells of so many to the longest side; `None` if the run is over before.
+pub fn meshed(solid: &Solid, cells: u32, run: &Run) -> Result<Option<rvachev::Mesh>, Fault> {
     let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
-    let mesh = solid.mesh_with(&settings, &Run { threads: 1, ..Run::default() });
-    mesh.map_err(|error| Fault { check: "mesh", text: error.to_string() })
+    match solid.mesh_with(&settings, run) {
+        Ok(mesh) => Ok(Some(mesh)),
+        Err(MeshingError::Cancelled(_)) => Ok(None),
+        Err(error) => Err(Fault { check: "mesh", text: error.to_string() }),
+    }
 }
 
 impl Subject<'_> {
@@ -38,7 +48,7 @@ impl Subject<'_> {
     }
 
     fn mesh(&mut self) -> Result<(), Fault> {
-        let mesh = meshed(self.solid, 24)?;
+        let Some(mesh) = meshed(self.solid, 24, &self.run)? else { return Ok(()) };
         let report = mesh.check();
         fault("soundness", report.is_sound() || report.triangles == 0, || report.to_string())?;
         let bounds = self.solid.bounds().unwrap();
@@ -74,10 +84,14 @@ impl Subject<'_> {
             let fold = |of: fn(DVec2, DVec2) -> DVec2| corners.into_iter().reduce(of).unwrap();
             let margin = DVec2::splat(0.05 * self.size);
             let region = PlaneBounds { min: fold(DVec2::min) - margin, max: fold(DVec2::max) + margin };
-            let wrong = |error: rvachev::error::RenderError| Fault { check: "slice", text: error.to_string() };
-            let slice = self.solid.slice_within(&plane, region).map_err(wrong)?;
             let tolerance = 2e-3 * self.size;
-            let contours = slice.contours(tolerance).map_err(wrong)?;
+            let settings = ContourSettings { tolerance, ..ContourSettings::default() };
+            let slice = self.solid.slice_with(&plane, Some(region), &self.run);
+            let contours = match slice.and_then(|slice| slice.contours_with(&settings, &self.run)) {
+                Ok(contours) => contours,
+                Err(RenderError::Cancelled(_)) => return Ok(()),
+                Err(error) => return Err(Fault { check: "slice", text: error.to_string() }),
+            };
             // What is not resolved is narrower than the tolerance: hardly a point is in it.
             let mut spare = if contours.unresolved() > 0 { 4 } else { 0 };
             for _ in 0..150 {
@@ -107,7 +121,10 @@ impl Subject<'_> {
         for _ in 0..6 {
             let (origin, target) = (self.random.point_in(&around), self.random.point_in(&self.frame));
             let direction = (target - origin).normalize_or(DVec3::X);
-            let hit = self.solid.raycast(origin, direction).unwrap();
+            let hit = match self.solid.raycast_all_with(&[(origin, direction)], &self.run) {
+                Err(PrepareError::Cancelled(_)) => return Ok(()),
+                hits => hits.unwrap()[0],
+            };
             let far = around.size().length();
             let end = hit.map_or(far, |hit| hit.distance);
             let inside = self.inside(origin);
@@ -151,7 +168,11 @@ impl Subject<'_> {
         for _ in 0..4 {
             let p = self.random.point_in(&around);
             let nearest = surface.iter().map(|s| s.distance(p)).fold(f64::INFINITY, f64::min);
-            let Some(found) = self.solid.closest_surface_point(p).unwrap() else {
+            let found = match self.solid.closest_surface_points_with(&[p], &self.run) {
+                Err(PrepareError::Cancelled(_)) => return Ok(()),
+                found => found.unwrap()[0],
+            };
+            let Some(found) = found else {
                 return fault("closest point", surface.is_empty(), || format!("none from {p}, one is {nearest} away"));
             };
             let away = found.distance(p);
