@@ -222,7 +222,7 @@ fn covers(part: &Quilt, spots: &[&Spot], slopes: &Slopes<'_>, near: f64, run: &R
     let found = slopes.at(&corners, run)?;
     // What is no corner of the surface at all tells nothing.
     let mut feet = corners.iter().zip(found).filter(|(_, slope)| slope.distance() < near).map(|(p, s)| *p + s.newton());
-    Ok(!patches.is_empty() && feet.all(|foot| patches.nearest(foot).is_some_and(|own| own.distance < near)))
+    Ok(!patches.is_empty() && feet.all(|foot| patches.is_within(foot, near)))
 }
 
 /// The surface in a box.

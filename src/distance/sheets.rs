@@ -67,7 +67,8 @@ pub(super) fn cover(
         let crossings = Crossings { program: &program, rounding, precision: PRECISE * tolerance };
         let is_sure = *is_sure || subject.has_inner(cell, &program);
         let lines = LINES.into();
-        let found = Cell { crossings, tolerance, bounds: *cell, is_sure, known: &known, lines }.sheets();
+        let found = Cell { crossings, tolerance, bounds: *cell, is_sure, known: &known, lines, run }.sheets();
+        run.check()?;
         let is_missed = is_sure && found.is_empty();
         Ok((found, is_missed.then_some(*cell)))
     };
@@ -78,7 +79,7 @@ pub(super) fn cover(
     // What ends beside a sheet, or beside what the cells show, is part of that.
     let sheets = Patches::new(&sheets, &alone)?;
     let is_left =
-        |cell: &Bounds| ![&known, &sheets].iter().any(|near| is_known(near, cell.center(), cell.longest_side()));
+        |cell: &Bounds| ![&known, &sheets].iter().any(|near| near.is_within(cell.center(), cell.longest_side()));
     Ok(missed.into_iter().flatten().filter(is_left).collect())
 }
 
@@ -92,11 +93,8 @@ struct Cell<'a> {
     known: &'a Patches,
     /// How many more lines are to be looked at.
     lines: std::cell::Cell<u32>,
-}
-
-/// Whether a point is so near to known patches.
-fn is_known(known: &Patches, p: DVec3, near: f64) -> bool {
-    known.nearest(p).is_some_and(|foot| foot.distance <= near)
+    /// When it is cancelled nothing more is found.
+    run: &'a Run,
 }
 
 /// Where a line crosses sheets, each the mean of faces that are one.
@@ -172,13 +170,13 @@ impl Cell<'_> {
     fn hits(&self, square: &Square, at: [f64; 2]) -> Hits {
         self.lines.set(self.lines.get().saturating_sub(1));
         let line = square.line(at);
-        let found = self.crossings.of(line);
+        let found = if self.run.check().is_ok() { self.crossings.of(line) } else { Vec::new() };
         let mut points = Vec::new();
         let mut left = &found[..];
         while let [first, rest @ ..] = left {
             let same = rest.iter().take_while(|by| *by - first < ONE * self.tolerance).count();
             let p = line.at(0.5 * (first + left[same]));
-            if !is_known(self.known, p, KNOWN * self.tolerance) {
+            if !self.known.is_within(p, KNOWN * self.tolerance) {
                 points.push(p);
             }
             left = &left[same + 1..];

@@ -202,14 +202,13 @@ fn complete_by_leaves(
     (cell, tolerance): (f64, f64),
     run: &Run,
 ) -> Result<bool, CompileError> {
-    let is_near = |p: DVec3, by: f64| known.nearest(p).is_some_and(|foot| foot.distance <= by);
-    let is_lacking = |p: DVec3| near.contains(p) && !is_near(p, KNOWN * tolerance);
+    let is_lacking = |p: DVec3| near.contains(p) && !known.is_within(p, KNOWN * tolerance);
     let [to_look, to_add] = run.stages([0.5, 0.5]);
     let lacking = run.install(|| subject.slender(cell, &is_lacking, &to_look)).map_err(compile_error)?;
     let (count, error) = (quilt.len(), quilt.error);
     if !complete(quilt, slopes, &lacking, tolerance, &to_add)? {
         // What patches were told to be off tells of these as well.
-        let untold = lacking.iter().filter(|own| !is_near(own.at, error));
+        let untold = lacking.iter().filter(|own| !known.is_within(own.at, error));
         let missed: Vec<Bounds> = untold.map(|own| Bounds::from_center(own.at, DVec3::splat(cell))).collect();
         if !missed.is_empty() {
             quilt.miss(missed, cell);

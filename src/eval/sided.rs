@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::accuracy::Accuracy;
 use super::apart::distance;
-use super::compile::{compile, kept};
+use super::compile::{compile, compile_and_bound, kept};
 use super::composite::as_distance;
 use super::exact::Exactness;
 use super::source::{CompileError, DistanceSource, Parts, Wanted};
@@ -54,22 +54,24 @@ pub(super) fn sided(
     run: &Run,
 ) -> Result<Found, CompileError> {
     let Some((operation, known, rest)) = divided(solid, side, exact) else {
-        compile(solid, source, run)?;
+        compile_and_bound(solid, source, run)?;
         let (field, accuracy) = distance(solid, wanted, source, run)?;
         return Ok(Found { field, parts: None, accuracy });
     };
-    let region = kept(solid).map_or(*wanted.region, |programs| side.region(wanted.region, &programs.bounds()));
+    let whole = kept(solid).map(|programs| programs.bounds_with(run)).transpose()?;
+    let region = whole.map_or(*wanted.region, |bounds| side.region(wanted.region, &bounds));
     let rest = sided((&rest, side), &Wanted { region: &region, ..*wanted }, exact, source, run)?;
     let (mut fields, mut accuracy) = (vec![rest.field], rest.accuracy);
     for operand in &known {
-        let programs = compile(operand, source, run)?;
+        let programs = compile_and_bound(operand, source, run)?;
         accuracy = accuracy.max(programs.accuracy);
         fields.push(as_distance(programs.surface.clone(), programs.bounds()));
     }
     let leaves = fields.iter().map(|field| Solid::from_node(Node::Leaf(field.clone()))).collect();
     let joined = Solid::from_node(Node::Join { operation, rule: RFunction::MIN_MAX, operands: leaves });
     let programs = compile(&joined, source, run)?;
-    let bounds = kept(solid).map_or(programs.bounds(), |programs| programs.bounds());
+    // That of the distances is not searched for where the solid's own is known.
+    let bounds = whole.map_or_else(|| programs.bounds_with(run), Ok)?;
     let field = as_distance(programs.surface.clone(), bounds);
     Ok(Found { field, parts: Some(Parts { operation, fields: fields.into() }), accuracy })
 }

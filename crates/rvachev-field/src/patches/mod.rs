@@ -64,7 +64,7 @@ use self::curved::Around;
 use self::disc::Disc;
 use self::face::{Face, Frame, Quadratic, Sides, wide};
 use self::hierarchy::{Node, Tree};
-use self::search::{Best, Entries, Keep, Nearest, Range, Stack};
+use self::search::{Best, Entries, Keep, Nearest, Range, SURE, Stack};
 use crate::Bounds;
 
 pub use self::approach::Approach;
@@ -185,6 +185,17 @@ impl Patches {
     /// The unit of the stored numbers: half the surface's size or up to twice that.
     fn unit(&self) -> f64 {
         self.frame.unit
+    }
+
+    /// Whether a point of a patch is nearer than this, to within rounding in single precision: what is
+    /// farther is not looked at.
+    pub fn is_within(&self, p: DVec3, distance: f64) -> bool {
+        let local = self.frame.into_local(p).to_array();
+        let most = (distance / self.frame.unit).powi(2).min(f64::from(f32::MAX));
+        let mut curved = One { patches: self, local, best: Best::none(0.0) };
+        let range = Range { low: most * SURE, high: most };
+        let Nearest { all, .. } = self.search(local, self.all(), &[], range, &mut Stack::new(), &mut curved);
+        all.square.min(curved.best.square) < most
     }
 
     /// The nearest patch to one point of the surface's frame.

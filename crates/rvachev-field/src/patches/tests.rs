@@ -257,6 +257,24 @@ fn searches_of_a_box_begin_with_all_that_may_be_nearest() {
 }
 
 #[test]
+fn what_is_within_a_distance_is_what_is_nearer() {
+    let mut random = Random(11);
+    let mut within = 0;
+    for found in [true, false].map(|curved| built(&sphere(8, curved))).iter().chain([&built(&cuboid(DVec3::ONE))]) {
+        for _ in 0..400 {
+            let p = random.point(1.5);
+            let distance = found.nearest(p).unwrap().distance;
+            for part in [0.0, 0.5, 0.999_99, 1.000_01, 2.0] {
+                assert_eq!(found.is_within(p, part * distance), part > 1.0, "{part} of {distance} at {p}");
+            }
+            within += usize::from(found.is_within(p, 0.1));
+        }
+    }
+    assert!(within > 100, "{within} are near");
+    assert!(!built(&[]).is_within(DVec3::ZERO, f64::MAX));
+}
+
+#[test]
 fn what_is_not_finite_is_left_out() {
     let mut patches = cuboid(DVec3::ONE);
     patches.insert(0, Patch::flat([DVec3::NAN, DVec3::ONE, DVec3::ZERO]));
