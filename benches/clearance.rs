@@ -73,7 +73,10 @@ fn meshes() -> Vec<(&'static str, Pair)> {
     let ball = || mesh(&Solid::sphere(2.0));
     let moved = |solid: Solid, by: [f64; 3]| [solid.clone(), solid.translate(by)];
     let large = || meshed(&bumpy(), 110);
-    let foil = |by: f64| mesh(&Solid::cuboid([6.0, 6.0, 0.02]).rotate_x(deg(by)));
+    let foil = |by: f64| {
+        let sheet = Profile::polygon([[-3.0, -3.0], [3.0, -3.0], [3.0, 3.0], [-3.0, 3.0]]);
+        sheet.extrude(0.02).rotate_x(deg(by))
+    };
     vec![
         row("blocks, a gap between", move || moved(own(), [0.0, 0.0, 3.0])),
         row("blocks face to face", move || moved(own(), [1.0, 0.3, 2.0])),
