@@ -8,9 +8,8 @@
 //!
 //! What may be deepest is looked at first, boxes of patches, then patches, then their parts, until
 //! nothing that is left may be deeper than what was found by more than a tolerance. Where surfaces
-//! all but fall together, as those of a solid that is laid in itself, all is as deep: runs of
-//! patches that are outside of the other solid when they are moved outwards by the tolerance are
-//! left out at once.
+//! all but fall together, as those of a solid that is laid in itself, all is as deep: patches that
+//! are outside of the other solid when they are moved outwards by the tolerance are left out.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -18,7 +17,7 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 
 use super::apart::ball;
-use super::overlap::{is_outside_beside, span_outside};
+use super::overlap::is_outside_beside;
 use super::piece::Piece;
 use super::{AT_ONCE, Side};
 use crate::eval::Block;
@@ -36,9 +35,9 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
     let runs = from.surface.runs();
     let mut search = Search { from, to, slack, best: 0.0, outside: None, open: BinaryHeap::new() };
     if let Some(all) = runs.all() {
-        let (centre, radius) = ball(runs.bounds(all));
+        let (centre, _) = ball(runs.bounds(all));
         let far = super::distance(&to.surface.patches, centre);
-        search.add_block(all, &About { centre, radius, far }, f64::INFINITY);
+        search.add_block(all, &About { centre, far }, f64::INFINITY);
     }
     let (mut looked, mut divided) = (0_usize, 0);
     loop {
@@ -56,9 +55,7 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
                 runs.parts(block).for_each(|part| search.add_block(part, &about, bound));
                 for n in runs.opened(&[block]).1 {
                     let piece = Piece::whole(&from.surface.patches, n);
-                    if !(about.is_near(search.enough()) && to.is_known && search.is_shallow(&piece)) {
-                        search.add(piece, false, bound);
-                    }
+                    search.add(piece, false, bound);
                 }
             }
             Node::Piece(piece, false) => {
@@ -112,18 +109,10 @@ impl Ord for Open {
     }
 }
 
-/// A ball about patches, and how far its centre is from the other surface at most.
+/// The centre of a box, and how far it is from the other surface at most.
 struct About {
     centre: DVec3,
-    radius: f64,
     far: f64,
-}
-
-impl About {
-    /// Whether something of it may be as near to the other surface as this.
-    fn is_near(&self, by: f64) -> bool {
-        self.far <= self.radius + by
-    }
 }
 
 struct Search<'a> {
@@ -169,16 +158,6 @@ impl Search<'_> {
         is_outside_beside(piece, self.from, self.to, by, &mut self.outside)
     }
 
-    /// The same of a block, if its patches lie in one plane to within that.
-    fn is_block_shallow(&self, block: Block) -> bool {
-        let (patches, span) = (&self.from.surface.patches, self.from.surface.runs().patches(block));
-        let [first, middle, last] =
-            [span.start, (span.start + span.end) / 2, span.end - 1].map(|n| Piece::whole(patches, n));
-        let heights = |piece: &Piece| piece.points.map(|p| (p - middle.points[0]).dot(middle.normal()).abs());
-        let is_even = [first, last].iter().flat_map(heights).all(|height| height <= self.enough());
-        is_even && span_outside(span, self.from, self.to, self.enough()) == Some(true)
-    }
-
     /// The surface is passed on the way out of its box.
     fn out(&self, own: &Bounds) -> f64 {
         let bounds = self.to.surface.patches.bounds();
@@ -189,7 +168,7 @@ impl Search<'_> {
         let own = self.from.surface.runs().bounds(block);
         let (centre, radius) = ball(own);
         let (most, enough) = (above.min(self.out(own)), self.enough());
-        if most <= enough || whole.is_near(enough) && self.is_block_shallow(block) {
+        if most <= enough {
             return;
         }
         // If the other surface is within the ball, and that is large, no bound leaves it out.
@@ -200,7 +179,7 @@ impl Search<'_> {
             self.bound(centre, radius, &own.corners())
         };
         if let Some([bound, far]) = found {
-            self.open.push(Open { bound: most.min(bound), node: Node::Block(block, About { centre, radius, far }) });
+            self.open.push(Open { bound: most.min(bound), node: Node::Block(block, About { centre, far }) });
         }
     }
 
@@ -217,7 +196,11 @@ impl Search<'_> {
         if most <= self.enough() {
             return;
         }
-        if let Some([bound, _]) = self.bound(middle, side + off, &piece.points) {
+        if let Some([bound, far]) = self.bound(middle, side + off, &piece.points) {
+            // Triangles tell this sooner than how deep corners are.
+            if self.to.is_known && far <= side + off + self.enough() && self.is_shallow(&piece) {
+                return;
+            }
             self.open.push(Open { bound: most.min(bound + off), node: Node::Piece(piece, is_numbered) });
         }
     }
@@ -228,6 +211,6 @@ impl Search<'_> {
     fn learn(&mut self, piece: &Piece) -> bool {
         let deepest = piece.numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         self.best = self.best.max(deepest);
-        deepest > self.enough() || !self.is_shallow(piece)
+        deepest > self.enough() || self.to.is_known || !self.is_shallow(piece)
     }
 }

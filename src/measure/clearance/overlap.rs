@@ -86,7 +86,7 @@ pub(super) fn is_outside_beside(
     if to.is_known && others.is_beyond(moved, rounding) == Some(true) {
         let middle = moved.iter().sum::<DVec3>() / 3.0;
         let beside = outside.filter(|p| p.distance(middle) <= BESIDE * piece.longest_side());
-        let is_beside = beside.is_some_and(|p| others.is_beyond([p, middle, middle], rounding) == Some(true));
+        let is_beside = beside.is_some_and(|p| others.is_beyond([p, middle, moved[0]], rounding) == Some(true));
         if !is_beside && to.program.value(middle) > 0.0 {
             return false;
         }
@@ -101,7 +101,7 @@ pub(super) fn is_outside_beside(
 
 /// The same of patches that follow each other, of which there are not too many, or whether they are
 /// inside: where these are flat, one look tells of all. Nothing if it does not.
-pub(super) fn span_outside(span: Range<usize>, from: &Side<'_>, to: &Side<'_>, by: f64) -> Option<bool> {
+fn span_outside(span: Range<usize>, from: &Side<'_>, to: &Side<'_>, by: f64) -> Option<bool> {
     if span.len() > TOGETHER || !to.is_known {
         return None;
     }

@@ -23,8 +23,11 @@ use super::closest::on_face;
 use super::face::double;
 use super::hierarchy::{DEEPEST, PARENT};
 
-/// Sums of coordinates of the patches' frame, of 2 at most, are off by less.
-const ROUNDING: f64 = 1e-14;
+/// Distances in the patches' frame, of coordinates of 2 at most, are off by less.
+const ROUNDING: f64 = 1e-12;
+
+/// Triangles with a corner whose sine is less have no plane.
+const SLIM: f64 = 1e-3;
 
 /// Sides whose sine is less are parallel: then corners tell.
 const PARALLEL: f64 = 1e-9;
@@ -114,7 +117,11 @@ impl Patches {
                 let [a, e, f] = [face.a, sides.e, sides.f].map(double);
                 let other = [a, a + e, a + f];
                 let (from, to) = hull(other);
-                if gap(from, to) < least && along.gap(from, to, along.of(other)) < least {
+                let is_near = gap(from, to) < least
+                    && along.gap(from, to, along.of(other)) < least
+                    && off_plane(own, other) < least
+                    && off_plane(other, own) < least;
+                if is_near {
                     let found = nearest(own, other);
                     if found.0 < least {
                         (least, point) = found;
@@ -168,6 +175,19 @@ impl Along {
 
 fn hull([a, b, c]: [DVec3; 3]) -> (DVec3, DVec3) {
     (a.min(b).min(c), a.max(b).max(c))
+}
+
+/// The square of how far a triangle is from the plane of another at least.
+fn off_plane(own: [DVec3; 3], [a, b, c]: [DVec3; 3]) -> f64 {
+    let (e, f) = (b - a, c - a);
+    let normal = e.cross(f);
+    let square = normal.length_squared();
+    if square <= SLIM * SLIM * e.length_squared() * f.length_squared() {
+        return 0.0;
+    }
+    let [p, q, r] = own.map(|p| normal.dot(p - a));
+    let off = p.min(q).min(r).max(-p.max(q).max(r)) / square.sqrt() - ROUNDING;
+    off.max(0.0).powi(2)
 }
 
 /// The square of how far two triangles are apart, and the point of the first that is nearest.
@@ -252,6 +272,41 @@ mod tests {
         fn triangle(&mut self, size: f64) -> [DVec3; 3] {
             let at = DVec3::new(self.next(), self.next(), self.next());
             [0; 3].map(|_| at + size * DVec3::new(self.next(), self.next(), self.next()))
+        }
+    }
+
+    /// The triangles of a bowl over a square.
+    fn bowl() -> Vec<[DVec3; 3]> {
+        const STEPS: usize = 12;
+        let at = |i: usize, j: usize| {
+            let [x, y] = [i, j].map(|k| k as f64 / STEPS as f64 - 0.5);
+            DVec3::new(x, y, 0.4 * (x * x + y * y))
+        };
+        let two = |k: usize| {
+            let (i, j) = (k % STEPS, k / STEPS);
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        };
+        (0..STEPS * STEPS).flat_map(two).collect()
+    }
+
+    #[test]
+    fn of_surfaces_beside_each_other_the_nearest_triangles_are_found() {
+        let own = bowl();
+        let patches = Patches::new(&own.iter().map(|own| Patch::flat(*own)).collect::<Vec<_>>(), &Run::default());
+        let patches = patches.unwrap();
+        let mut numbers = Numbers(3);
+        // From above, from below, and where both pass each other.
+        for up in [0.1, 0.01, 0.001, 0.0, -0.05] {
+            for [a, b, c] in own.iter().step_by(5) {
+                let by = up * DVec3::Z + 1e-3 * DVec3::new(numbers.next(), numbers.next(), numbers.next());
+                let moved = [*a + by, *b + 1.01 * by, *c + by];
+                let brute = own.iter().map(|other| nearest(moved, *other).0).fold(f64::INFINITY, f64::min).sqrt();
+                let found = patches.approach(moved).unwrap();
+                assert!((found.distance - brute).abs() < 1e-6, "{found:?} {brute} {up}");
+                assert_eq!(patches.approach_within(moved, 0.99 * brute - 1e-6).map(|found| found.distance), None);
+                assert!(patches.approach_within(moved, 1.01 * brute + 1e-6).is_some(), "{brute} {up}");
+            }
         }
     }
 
