@@ -58,7 +58,7 @@ pub(super) fn common(from: &Side<'_>, to: &Side<'_>, slack: f64, p: DVec3) -> Op
     let is_within = |p: DVec3| to.program.value(p) > 0.0;
     let is_common = |p: &DVec3| {
         // On the very triangles of a mesh its value takes long, and else the distance does.
-        let is_below = if to.is_known { is_deep(*p) && is_within(*p) } else { is_within(*p) && is_deep(*p) };
+        let is_below = (to.is_known || is_within(*p)) && is_deep(*p) && (!to.is_known || is_within(*p));
         is_below && from.program.value(*p) > 0.0
     };
     inner.into_iter().find(is_common)
