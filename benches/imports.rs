@@ -5,19 +5,18 @@
 //! triangle, nanoseconds a point of values in single precision in blocks of 8³ points near the
 //! surface and over all of the box, as meshes ask for them: sides, and distances next to the
 //! surface; of all distances near the surface; and of single points in double precision. Then how
-//! fast files are read, and how long clearances of two imported meshes take.
+//! fast files are read.
 //!
-//! Words after `--` choose sizes by their names; `clearance` chooses the clearances alone, words
-//! after it those whose names have one of them. `save` writes the meshes and the points near them
+//! Words after `--` choose sizes by their names. `save` writes the meshes and the points near them
 //! for other programs: `target/imports-NAME.ply` and `.xyz`.
 
 use std::fs;
 use std::hint::black_box;
 
-use cpu_time::{ProcessTime, ThreadTime};
+use cpu_time::ThreadTime;
 use glam::{DVec3, Vec3};
 use rvachev::io::{FileFormat, LoadSettings, write_glb, write_obj, write_ply, write_stl};
-use rvachev::{Mesh, MeshSettings, MeshSolid, Run, SaveSettings, Solid, deg};
+use rvachev::{Mesh, Run, SaveSettings};
 use rvachev_field::kernel::CHUNK;
 use rvachev_field::{AnyField, Chunk, MeshLeaf, Placement};
 
@@ -96,9 +95,6 @@ fn values(leaf: &dyn AnyField, columns: &[Vec<f32>; 3], band: f64) -> f64 {
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
-    if let Some(at) = words.iter().position(|word| word == "clearance") {
-        return clearances(&words[at + 1..]);
-    }
     let is_chosen = |name: &str| words.iter().all(|word| word == "save") || words.iter().any(|word| word == name);
     println!(
         "{:>6} {:>10} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
@@ -135,41 +131,6 @@ fn main() {
         }
     }
     read();
-    clearances(&[]);
-}
-
-/// Clearances of meshes with default settings, in milliseconds of all threads, when their triangles
-/// are known.
-fn clearances(words: &[String]) {
-    let mesh = |solid: &Solid| {
-        Solid::from_mesh(&solid.mesh(&MeshSettings::default()).expect("it can be meshed"), MeshSolid::default())
-    };
-    let block = Solid::cuboid([4.0, 4.0, 2.0]);
-    let tilt = |solid: &Solid| mesh(&solid.rotate_x(deg(20.0)).rotate_z(deg(35.0)));
-    let (own, tilted, ball) = (mesh(&block), tilt(&block), mesh(&Solid::sphere(2.0)));
-    let speck = tilt(&Solid::cuboid([0.004; 3]).translate([0.5, 0.2, 1.002]));
-    let pairs = [
-        ("blocks, a gap between", own.clone(), own.translate([0.0, 0.0, 3.0])),
-        ("blocks face to face", own.clone(), own.translate([1.0, 0.3, 2.0])),
-        ("tilted blocks face to face", tilted.clone(), tilt(&block.translate([0.5, 0.2, 2.0]))),
-        ("a speck on a tilted block", tilted.clone(), speck),
-        ("blocks in each other", own.clone(), own.translate([1.0, 0.3, 0.5])),
-        ("a block in itself", own.clone(), own.clone()),
-        ("balls, a gap between", ball.clone(), ball.translate([4.1, 0.0, 0.0])),
-        ("a ball in itself", ball.clone(), ball.clone()),
-        ("balls in each other", ball.clone(), ball.translate([1.0, 0.7, 0.3])),
-        ("balls that are just in each other", ball.clone(), ball.rotate_x(deg(50.0)).translate([3.9, 0.0, 0.0])),
-    ];
-    for (name, one, other) in pairs {
-        if !words.is_empty() && !words.iter().any(|word| name.contains(word.as_str())) {
-            continue;
-        }
-        let clearance = || one.clearance(&other, &Run::default()).expect("they can be asked");
-        black_box(clearance());
-        let start = ProcessTime::now();
-        black_box(clearance());
-        println!("clearance, {name}: {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
-    }
 }
 
 /// Reading, in millions of triangles a second.

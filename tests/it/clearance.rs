@@ -173,6 +173,37 @@ fn a_foil_through_a_block_overlaps() {
     assert!(found.overlaps && found.depth + found.depth_error >= 0.9, "{found:?}");
 }
 
+#[test]
+fn surfaces_that_all_but_fall_together_are_as_deep_as_they_are_apart() {
+    let settings = MeshSettings { cell: CellSize::LongestSide(40), ..MeshSettings::default() };
+    let mesh = Solid::sphere(2.0).mesh(&settings).unwrap();
+    let ball = Solid::from_mesh(&mesh, MeshSolid::default());
+    // By more than what counts as touching, less than a triangle is wide.
+    let by = DVec3::new(0.03, 0.01, 0.0);
+    let found = ball.clearance(&ball.translate(by), &Run::default()).unwrap().unwrap();
+    let depth = |p: DVec3| ball.value(p).unwrap();
+    let deepest = mesh.positions().iter().map(|p| depth(p.as_dvec3() + by)).fold(0.0, f64::max);
+    assert!(found.overlaps && found.depth + found.depth_error >= deepest, "{found:?} {deepest}");
+    // No point is deeper than it was moved.
+    assert!(found.depth <= by.length() + 1e-6 && found.depth_error < 0.1 * by.length(), "{found:?}");
+    // Turned about its middle, it is as it was, to within what triangles are off a ball.
+    let turned = ball.clearance(&ball.rotate_x(deg(50.0)), &Run::default()).unwrap().unwrap();
+    assert!(turned.overlaps && turned.depth + turned.depth_error < 0.005, "{turned:?}");
+}
+
+#[test]
+fn a_mesh_in_a_hollow_has_its_even_gap() {
+    let settings = MeshSettings { cell: CellSize::LongestSide(40), ..MeshSettings::default() };
+    let [ball, shell] = [Solid::sphere(2.0), Solid::sphere(3.0).shell(0.8)].map(|solid| solid.mesh(&settings).unwrap());
+    let [inner, outer] = [&ball, &shell].map(|mesh| Solid::from_mesh(mesh, MeshSolid::default()));
+    let found = clearance(&inner, &outer);
+    let gap = |p: &glam::Vec3| -outer.value(p.as_dvec3()).unwrap();
+    let nearest = ball.positions().iter().map(gap).fold(f64::INFINITY, f64::min);
+    // Faces may be nearer than vertices, by what they are off the hollow.
+    assert!(!found.overlaps && found.distance <= nearest + found.tolerance, "{found:?} {nearest}");
+    assert!(found.distance > nearest - 0.01 && found.tolerance < 0.002, "{found:?} {nearest}");
+}
+
 /// A screw: a ridge on a core, all grown by a length.
 fn screw(by: f64) -> Solid {
     let section =

@@ -36,6 +36,9 @@ const GAIN: f64 = 0.25;
 /// After so many points the work ends, with what tolerance there is.
 const MOST: usize = 1 << 21;
 
+/// A sum that is more than its parts by this is so after rounding.
+const ABOVE: f64 = 1.0 + 1e-12;
+
 /// Steps from one surface to the other and back that end the search.
 const STEPS: usize = 30;
 
@@ -248,9 +251,12 @@ impl<'a> Search<'a> {
                     let mut nearest = None;
                     let is_flat = piece.off(patches) <= self.from.fineness();
                     let place = self.place(enough, piece.middle(), by_value, || {
-                        nearest = others.approach(piece.points).filter(|_| is_flat);
-                        if let Some(Approach { distance, .. }) = nearest {
-                            return distance - piece.off(patches);
+                        if is_flat && others.is_flat() {
+                            // What is farther than what counts need not be known of it.
+                            let off = piece.off(patches);
+                            let most = if enough > 0.0 { (enough + self.slack + off) * ABOVE } else { f64::INFINITY };
+                            nearest = others.approach_within(piece.points, most);
+                            return nearest.map_or(most, |Approach { distance, .. }| distance) - off;
                         }
                         own = own.numbered(|p| distance(others, p));
                         least_of(&own, patches)
@@ -289,7 +295,11 @@ impl<'a> Search<'a> {
             pieces = Vec::with_capacity(4 * next.len());
             for some in next.chunks(16 * AT_ONCE) {
                 run.check()?;
-                pieces.par_extend(some.par_iter().flat_map_iter(|piece| piece.divided(patches, |_| 0.0)));
+                pieces.par_extend(some.par_iter().flat_map_iter(|piece| {
+                    // What is told of some parts by the other's value, or as a triangle, needs no numbers.
+                    let is_asked = !self.is_gentle && !piece.numbers[0].is_nan();
+                    piece.divided(patches, |p| if is_asked { distance(others, p) } else { f64::NAN })
+                }));
             }
         }
         Ok(asked)

@@ -7,7 +7,9 @@
 //! ```
 //!
 //! What may be deepest is looked at first, boxes of patches, then patches, then their parts, until
-//! nothing that is left may be deeper than what was found by more than a tolerance.
+//! nothing that is left may be deeper than what was found by more than a tolerance. Where surfaces
+//! all but fall together, as those of a solid that is laid in itself, all is as deep: patches that
+//! are outside of the other solid when they are moved outwards by the tolerance are left out.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -15,7 +17,7 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 
 use super::apart::ball;
-use super::overlap::is_outside;
+use super::overlap::is_outside_beside;
 use super::piece::Piece;
 use super::{AT_ONCE, Side};
 use crate::eval::Block;
@@ -31,8 +33,12 @@ const RELATIVE: f64 = 0.01;
 /// least 0, and how much deeper there may be one.
 pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<[f64; 2], Cancelled> {
     let runs = from.surface.runs();
-    let mut search = Search { from, to, slack, best: 0.0, open: BinaryHeap::new() };
-    runs.all().into_iter().for_each(|all| search.add_block(all));
+    let mut search = Search { from, to, slack, best: 0.0, outside: None, open: BinaryHeap::new() };
+    if let Some(all) = runs.all() {
+        let (centre, _) = ball(runs.bounds(all));
+        let far = super::distance(&to.surface.patches, centre);
+        search.add_block(all, &About { centre, far }, f64::INFINITY);
+    }
     let (mut looked, mut divided) = (0_usize, 0);
     loop {
         let enough = search.enough();
@@ -45,10 +51,11 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
             run.report(1.0 - (-(looked as f64) / 4096.0).exp2());
         }
         match node {
-            Node::Block(block) => {
-                runs.parts(block).for_each(|part| search.add_block(part));
+            Node::Block(block, about) => {
+                runs.parts(block).for_each(|part| search.add_block(part, &about, bound));
                 for n in runs.opened(&[block]).1 {
-                    search.add(Piece::whole(&from.surface.patches, n), false, bound);
+                    let piece = Piece::whole(&from.surface.patches, n);
+                    search.add(piece, false, bound);
                 }
             }
             Node::Piece(piece, false) => {
@@ -77,7 +84,7 @@ struct Open {
 }
 
 enum Node {
-    Block(Block),
+    Block(Block, About),
     /// With whether its numbers are how deep its corners are.
     Piece(Piece, bool),
 }
@@ -102,12 +109,20 @@ impl Ord for Open {
     }
 }
 
+/// The centre of a box, and how far it is from the other surface at most.
+struct About {
+    centre: DVec3,
+    far: f64,
+}
+
 struct Search<'a> {
     from: &'a Side<'a>,
     to: &'a Side<'a>,
     slack: f64,
     /// How deep a point is that was found.
     best: f64,
+    /// A point outside of the other solid, close to what was looked at last.
+    outside: Option<DVec3>,
     open: BinaryHeap<Open>,
 }
 
@@ -125,14 +140,22 @@ impl Search<'_> {
     }
 
     /// No point is deeper whose ball, and convex hull, these are, if there may be one that is deep
-    /// enough to be looked at; the ball is about the first point.
-    fn bound(&self, middle: DVec3, radius: f64, corners: &[DVec3]) -> Option<f64> {
+    /// enough to be looked at; the ball is about the first point. With how far that is from the
+    /// other surface.
+    fn bound(&self, middle: DVec3, radius: f64, corners: &[DVec3]) -> Option<[f64; 2]> {
         let others = &self.to.surface.patches;
         let (foot, from_patch) = others.nearest_with(middle, corners)?;
         let from_foot = corners.iter().map(|p| p.distance(foot.point)).fold(0.0, f64::max);
         let bound = if others.is_flat() { from_patch.min(from_foot) } else { from_foot };
         let is_all_outside = || foot.distance >= radius && self.to.program.value(middle) <= 0.0;
-        (bound > self.enough() && !is_all_outside()).then_some(bound)
+        (bound > self.enough() && !is_all_outside()).then_some([bound, foot.distance])
+    }
+
+    /// Whether no point of a piece is deeper than what need not be looked at, as the piece is
+    /// outside when it is moved outwards by that.
+    fn is_shallow(&mut self, piece: &Piece) -> bool {
+        let by = self.enough();
+        is_outside_beside(piece, self.from, self.to, by, &mut self.outside)
     }
 
     /// The surface is passed on the way out of its box.
@@ -141,15 +164,22 @@ impl Search<'_> {
         (own.max - bounds.min).min(bounds.max - own.min).min_element()
     }
 
-    fn add_block(&mut self, block: Block) {
+    fn add_block(&mut self, block: Block, whole: &About, above: f64) {
         let own = self.from.surface.runs().bounds(block);
         let (centre, radius) = ball(own);
-        let out = self.out(own);
-        if out <= self.enough() {
+        let (most, enough) = (above.min(self.out(own)), self.enough());
+        if most <= enough {
             return;
         }
-        if let Some(bound) = self.bound(centre, radius, &own.corners()) {
-            self.open.push(Open { bound: bound.min(out), node: Node::Block(block) });
+        // If the other surface is within the ball, and that is large, no bound leaves it out.
+        let far = whole.far + whole.centre.distance(centre);
+        let found = if far < radius && radius > enough {
+            Some([far + radius, far])
+        } else {
+            self.bound(centre, radius, &own.corners())
+        };
+        if let Some([bound, far]) = found {
+            self.open.push(Open { bound: most.min(bound), node: Node::Block(block, About { centre, far }) });
         }
     }
 
@@ -166,7 +196,11 @@ impl Search<'_> {
         if most <= self.enough() {
             return;
         }
-        if let Some(bound) = self.bound(middle, side + off, &piece.points) {
+        if let Some([bound, far]) = self.bound(middle, side + off, &piece.points) {
+            // Triangles tell this sooner than how deep corners are.
+            if self.to.is_known && far <= side + off + self.enough() && self.is_shallow(&piece) {
+                return;
+            }
             self.open.push(Open { bound: most.min(bound + off), node: Node::Piece(piece, is_numbered) });
         }
     }
@@ -177,6 +211,6 @@ impl Search<'_> {
     fn learn(&mut self, piece: &Piece) -> bool {
         let deepest = piece.numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         self.best = self.best.max(deepest);
-        deepest > self.slack || !is_outside(piece, self.from, self.to, self.slack)
+        deepest > self.enough() || self.to.is_known || !self.is_shallow(piece)
     }
 }

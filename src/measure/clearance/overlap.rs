@@ -8,6 +8,7 @@
 //!        other                  point inside, are divided.
 //! ```
 
+use std::iter;
 use std::ops::{ControlFlow, Range};
 
 use glam::DVec3;
@@ -30,6 +31,9 @@ const INSIDE: [f64; 5] = [4.0, 1.0, 0.25, 0.06, 0.0];
 /// if they are no larger than so many accuracies.
 const SMALL: f64 = 4.0;
 
+/// A path from one piece to another is asked about if it is no longer than so many of their sides.
+const BESIDE: f64 = 4.0;
+
 /// After so many pieces the work ends, with what is known then.
 const MOST: usize = 1 << 17;
 
@@ -50,21 +54,44 @@ pub(super) fn common(from: &Side<'_>, to: &Side<'_>, slack: f64, p: DVec3) -> Op
     let others = &to.surface.patches;
     let normal = from.program.gradient(p).1.normalize_or_zero();
     let inner = INSIDE.map(|by| p + by * slack * normal);
-    // On the very triangles of a mesh its value takes long.
-    let is_common =
-        |p: &DVec3| distance(others, *p) > slack && to.program.value(*p) > 0.0 && from.program.value(*p) > 0.0;
+    let is_deep = |p: DVec3| distance(others, p) > slack;
+    let is_within = |p: DVec3| to.program.value(p) > 0.0;
+    let is_common = |p: &DVec3| {
+        // On the very triangles of a mesh its value takes long, and else the distance does.
+        let is_below = (to.is_known || is_within(*p)) && is_deep(*p) && (!to.is_known || is_within(*p));
+        is_below && from.program.value(*p) > 0.0
+    };
     inner.into_iter().find(is_common)
 }
 
 /// Whether a piece of `from` that is moved along its normal by this is outside of the other solid:
 /// then no point of it is deeper in that.
 pub(super) fn is_outside(piece: &Piece, from: &Side<'_>, to: &Side<'_>, by: f64) -> bool {
+    is_outside_beside(piece, from, to, by, &mut None)
+}
+
+/// The same, given a point that is outside, if one is known. Takes the piece's middle where it was
+/// moved to in its place.
+pub(super) fn is_outside_beside(
+    piece: &Piece,
+    from: &Side<'_>,
+    to: &Side<'_>,
+    by: f64,
+    outside: &mut Option<DVec3>,
+) -> bool {
     let (patches, others) = (&from.surface.patches, &to.surface.patches);
     let moved = piece.moved(by);
     let rounding = piece.off(patches) + from.fineness() + to.fineness();
-    // What meets no triangle is on one side of them.
+    // What meets no triangle is on one side of them, as is what a path leads to that meets none.
     if to.is_known && others.is_beyond(moved, rounding) == Some(true) {
-        return to.program.value(moved.iter().sum::<DVec3>() / 3.0) <= 0.0;
+        let middle = moved.iter().sum::<DVec3>() / 3.0;
+        let beside = outside.filter(|p| p.distance(middle) <= BESIDE * piece.longest_side());
+        let is_beside = beside.is_some_and(|p| others.is_beyond([p, middle, moved[0]], rounding) == Some(true));
+        if !is_beside && to.program.value(middle) > 0.0 {
+            return false;
+        }
+        *outside = Some(middle);
+        return true;
     }
     let zone = piece.zone(patches, by * piece.normal());
     let [x, y, z] = zone.hull();
@@ -183,7 +210,7 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
     let bounds = others.bounds().inflate(slack);
     // Beyond the other's box, farther from its surface than it is large, below its surface,
     // undecided.
-    let look = |piece: &Piece| {
+    let look = |piece: &Piece, is_whole: bool| {
         let middle = piece.middle();
         let most = piece.longest_side() + piece.off(patches) + 2.0 * slack;
         if bounds.distance_squared(middle).sqrt() > most {
@@ -195,7 +222,9 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         if is_outside(piece, from, to, -slack) {
             return ControlFlow::Continue(None);
         }
-        match [middle].into_iter().chain(piece.points).find_map(|p| common(from, to, slack, p)) {
+        // Corners of parts are those of wholes, or close to the middles of smaller parts.
+        let corners = piece.points.into_iter().filter(|_| is_whole);
+        match iter::once(middle).chain(corners).find_map(|p| common(from, to, slack, p)) {
             Some(found) => ControlFlow::Break(found),
             None => ControlFlow::Continue(Some(*piece)),
         }
@@ -209,11 +238,13 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
     let mut asked = near.len();
     let mut pieces: Vec<Piece> = near.into_iter().map(|n| Piece::whole(patches, n)).collect();
     let mut levels = Levels::new(&to_divide);
+    let mut are_whole = true;
     while !pieces.is_empty() {
         let mut open = Vec::new();
         for chunk in levels.chunks(&pieces, AT_ONCE) {
             let chunk = chunk?;
-            let found: Vec<ControlFlow<DVec3, Option<Piece>>> = jobs::in_order(chunk.len(), |n| look(&chunk[n]));
+            let found: Vec<ControlFlow<DVec3, Option<Piece>>> =
+                jobs::in_order(chunk.len(), |n| look(&chunk[n], are_whole));
             for found in found {
                 match found {
                     ControlFlow::Break(point) => return Ok(Entry::At(point)),
@@ -232,7 +263,8 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         left = open.iter().filter(|piece| is_small(piece)).map(reach).fold(left, f64::max);
         open.retain(|piece| !is_small(piece));
         levels.down()?;
-        pieces = open.iter().flat_map(|piece| piece.divided(patches, |_| 0.0)).collect();
+        pieces = open.iter().flat_map(|piece| piece.divided(patches, |_| f64::NAN)).collect();
+        are_whole = false;
     }
     Ok(Entry::AtMost(left))
 }

@@ -7,8 +7,8 @@ use rvachev_field::{Patches, Zone};
 
 use crate::Bounds;
 
-/// A part of a patch: its corners in the patch's coordinates, where they are, and a number that is
-/// known of each.
+/// A part of a patch: its corners in the patch's coordinates, where they are, and a number of each,
+/// NaN where none is known.
 #[derive(Clone, Copy)]
 pub(super) struct Piece {
     patch: u32,
@@ -24,18 +24,22 @@ const CORNERS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 const ASIDE: f64 = 0.6;
 
 impl Piece {
-    /// A whole patch, with 0 at its corners.
+    /// A whole patch, of whose corners no number is known.
     pub(super) fn whole(patches: &Patches, n: usize) -> Piece {
         let points = CORNERS.map(|at| patches.point(n, at));
-        Piece { patch: n as u32, corners: CORNERS, points, numbers: [0.0; 3] }
+        Piece { patch: n as u32, corners: CORNERS, points, numbers: [f64::NAN; 3] }
     }
 
-    /// With other numbers at its corners.
+    /// With the numbers of corners of which none is known.
     pub(super) fn numbered(self, number: impl Fn(DVec3) -> f64) -> Piece {
-        Piece { numbers: self.points.map(number), ..self }
+        let numbers = [0, 1, 2].map(|k| {
+            let own = self.numbers[k];
+            if own.is_nan() { number(self.points[k]) } else { own }
+        });
+        Piece { numbers, ..self }
     }
 
-    /// Its four parts.
+    /// Its four parts, which share corners: they are told the numbers of those between its own.
     pub(super) fn divided(&self, patches: &Patches, number: impl Fn(DVec3) -> f64) -> [Piece; 4] {
         let middles = self.middles(patches).map(|(at, point)| (at, point, number(point)));
         let ends = [0, 1, 2].map(|k| (self.corners[k], self.points[k], self.numbers[k]));

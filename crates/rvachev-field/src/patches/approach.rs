@@ -6,6 +6,15 @@
 //!     /____\ |   /    one goes through the other.
 //!            |_/
 //! ```
+//!
+//! To look at two triangles takes long, and where surfaces run beside each other many are about as
+//! near as the nearest. Most are left out as they are seen along the way to a near point:
+//!
+//! ```text
+//!         ---T---          What is below T by g along a way, and aside of it by l across that way,
+//!       g |                is no nearer than √(g² + l²), however the axes lie.
+//!         '   l  --S--
+//! ```
 
 use glam::DVec3;
 
@@ -13,6 +22,12 @@ use super::Patches;
 use super::closest::on_face;
 use super::face::double;
 use super::hierarchy::{DEEPEST, PARENT};
+
+/// Distances in the patches' frame, of coordinates of 2 at most, are off by less.
+const ROUNDING: f64 = 1e-12;
+
+/// Triangles with a corner whose sine is less have no plane.
+const SLIM: f64 = 1e-3;
 
 /// Sides whose sine is less are parallel: then corners tell.
 const PARALLEL: f64 = 1e-9;
@@ -33,17 +48,30 @@ impl Patches {
         self.approach_within(triangle, f64::INFINITY)
     }
 
+    /// The same if that is within a length.
+    pub fn approach_within(&self, triangle: [DVec3; 3], length: f64) -> Option<Approach> {
+        if self.is_empty() || !self.is_flat() {
+            return None;
+        }
+        let middle = self.frame.into_local(triangle.iter().sum::<DVec3>() / 3.0);
+        let at = self.search_one(middle.to_array()).which as usize;
+        let [s, t] = self.closest(at, middle.to_array()).coordinates;
+        let foot = self.point_and_normal(at, s, t).0;
+        self.approached(triangle, length, Some((middle, foot)))
+    }
+
     /// Whether no point of a triangle is within a length of the patches; nothing if some of them
     /// are curved.
     pub fn is_beyond(&self, triangle: [DVec3; 3], length: f64) -> Option<bool> {
         if !self.quadratics.is_empty() {
             return None;
         }
-        Some(self.approach_within(triangle, length).is_none())
+        Some(self.approached(triangle, length, None).is_none())
     }
 
-    /// Where a triangle is nearest to the patches, if that is within a length.
-    fn approach_within(&self, triangle: [DVec3; 3], length: f64) -> Option<Approach> {
+    /// Where a triangle is nearest to the patches, if that is within a length, given its middle and
+    /// the point of the patches that is nearest to that.
+    fn approached(&self, triangle: [DVec3; 3], length: f64, near: Option<(DVec3, DVec3)>) -> Option<Approach> {
         if self.is_empty() || !self.quadratics.is_empty() {
             return None;
         }
@@ -51,11 +79,23 @@ impl Patches {
         let own = triangle.map(|p| self.frame.into_local(p));
         let (low, high) = hull(own);
         let gap = |from: DVec3, to: DVec3| (from - high).max(low - to).max(DVec3::ZERO).length_squared();
-        let of_node = |at: u32| {
-            let node = &self.nodes[at as usize];
-            gap(double(node.low), double(node.high))
-        };
         let (mut least, mut point) = (most, own[0]);
+        let mut way = (own[1] - own[0]).cross(own[2] - own[0]);
+        if let Some((middle, foot)) = near {
+            let away = middle - foot;
+            if away.length_squared() < least {
+                (least, point) = (away.length_squared(), middle);
+            }
+            // Nearer than this it is rounding.
+            way = if away.length_squared() > PARALLEL * PARALLEL { away } else { way };
+        }
+        let along = Along::new(way.normalize_or_zero(), own);
+        let of_node = |at: u32, least: f64| {
+            let node = &self.nodes[at as usize];
+            let (from, to) = (double(node.low), double(node.high));
+            let by_box = gap(from, to);
+            if by_box >= least { by_box } else { by_box.max(along.gap(from, to, along.of_box(from, to))) }
+        };
         let mut stack = [(0, 0.0); DEEPEST + 1];
         let mut height = 1;
         while height > 0 {
@@ -66,7 +106,7 @@ impl Patches {
             }
             let node = &self.nodes[at as usize];
             if node.count >= PARENT {
-                let both = [node.first, node.first + 1].map(|at| (at, of_node(at)));
+                let both = [node.first, node.first + 1].map(|at| (at, of_node(at, least)));
                 let [far, near] = if both[0].1 < both[1].1 { [both[1], both[0]] } else { both };
                 (stack[height], stack[height + 1]) = (far, near);
                 height += 2;
@@ -77,7 +117,11 @@ impl Patches {
                 let [a, e, f] = [face.a, sides.e, sides.f].map(double);
                 let other = [a, a + e, a + f];
                 let (from, to) = hull(other);
-                if gap(from, to) < least {
+                let is_near = gap(from, to) < least
+                    && along.gap(from, to, along.of(other)) < least
+                    && off_plane(own, other) < least
+                    && off_plane(other, own) < least;
+                if is_near {
                     let found = nearest(own, other);
                     if found.0 < least {
                         (least, point) = found;
@@ -90,8 +134,60 @@ impl Patches {
     }
 }
 
+/// A triangle as it is seen along a way.
+struct Along {
+    /// A unit vector, or 0.
+    way: DVec3,
+    span: [f64; 2],
+    /// A ball about the triangle.
+    middle: DVec3,
+    radius: f64,
+}
+
+impl Along {
+    fn new(way: DVec3, own: [DVec3; 3]) -> Along {
+        let (low, high) = hull(own);
+        let whole = Along { way, span: [0.0; 2], middle: 0.5 * (low + high), radius: 0.5 * (high - low).length() };
+        Along { span: whole.of(own), ..whole }
+    }
+
+    /// From where to where a triangle is.
+    fn of(&self, corners: [DVec3; 3]) -> [f64; 2] {
+        let [a, b, c] = corners.map(|p| self.way.dot(p));
+        [a.min(b).min(c), a.max(b).max(c)]
+    }
+
+    /// From where to where a box is.
+    fn of_box(&self, low: DVec3, high: DVec3) -> [f64; 2] {
+        let (middle, half) = (self.way.dot(0.5 * (low + high)), self.way.abs().dot(0.5 * (high - low)));
+        [middle - half, middle + half]
+    }
+
+    /// The square of how far what is in a box, and there along the way, is at least.
+    fn gap(&self, low: DVec3, high: DVec3, [from, to]: [f64; 2]) -> f64 {
+        let along = (self.span[0] - to).max(from - self.span[1]) - ROUNDING;
+        let away = 0.5 * (low + high) - self.middle;
+        let across = (away - away.dot(self.way) * self.way).length();
+        let aside = across - 0.5 * (high - low).length() - self.radius - ROUNDING;
+        along.max(0.0).powi(2) + aside.max(0.0).powi(2)
+    }
+}
+
 fn hull([a, b, c]: [DVec3; 3]) -> (DVec3, DVec3) {
     (a.min(b).min(c), a.max(b).max(c))
+}
+
+/// The square of how far a triangle is from the plane of another at least.
+fn off_plane(own: [DVec3; 3], [a, b, c]: [DVec3; 3]) -> f64 {
+    let (e, f) = (b - a, c - a);
+    let normal = e.cross(f);
+    let square = normal.length_squared();
+    if square <= SLIM * SLIM * e.length_squared() * f.length_squared() {
+        return 0.0;
+    }
+    let [p, q, r] = own.map(|p| normal.dot(p - a));
+    let off = p.min(q).min(r).max(-p.max(q).max(r)) / square.sqrt() - ROUNDING;
+    off.max(0.0).powi(2)
 }
 
 /// The square of how far two triangles are apart, and the point of the first that is nearest.
@@ -176,6 +272,41 @@ mod tests {
         fn triangle(&mut self, size: f64) -> [DVec3; 3] {
             let at = DVec3::new(self.next(), self.next(), self.next());
             [0; 3].map(|_| at + size * DVec3::new(self.next(), self.next(), self.next()))
+        }
+    }
+
+    /// The triangles of a bowl over a square.
+    fn bowl() -> Vec<[DVec3; 3]> {
+        const STEPS: usize = 12;
+        let at = |i: usize, j: usize| {
+            let [x, y] = [i, j].map(|k| k as f64 / STEPS as f64 - 0.5);
+            DVec3::new(x, y, 0.4 * (x * x + y * y))
+        };
+        let two = |k: usize| {
+            let (i, j) = (k % STEPS, k / STEPS);
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        };
+        (0..STEPS * STEPS).flat_map(two).collect()
+    }
+
+    #[test]
+    fn of_surfaces_beside_each_other_the_nearest_triangles_are_found() {
+        let own = bowl();
+        let patches = Patches::new(&own.iter().map(|own| Patch::flat(*own)).collect::<Vec<_>>(), &Run::default());
+        let patches = patches.unwrap();
+        let mut numbers = Numbers(3);
+        // From above, from below, and where both pass each other.
+        for up in [0.1, 0.01, 0.001, 0.0, -0.05] {
+            for [a, b, c] in own.iter().step_by(5) {
+                let by = up * DVec3::Z + 1e-3 * DVec3::new(numbers.next(), numbers.next(), numbers.next());
+                let moved = [*a + by, *b + 1.01 * by, *c + by];
+                let brute = own.iter().map(|other| nearest(moved, *other).0).fold(f64::INFINITY, f64::min).sqrt();
+                let found = patches.approach(moved).unwrap();
+                assert!((found.distance - brute).abs() < 1e-6, "{found:?} {brute} {up}");
+                assert_eq!(patches.approach_within(moved, 0.99 * brute - 1e-6).map(|found| found.distance), None);
+                assert!(patches.approach_within(moved, 1.01 * brute + 1e-6).is_some(), "{brute} {up}");
+            }
         }
     }
 
