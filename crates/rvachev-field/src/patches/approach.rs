@@ -75,7 +75,7 @@ impl Patches {
         if self.is_empty() || !self.quadratics.is_empty() {
             return None;
         }
-        let most = (length / self.frame.unit).powi(2);
+        let most = (length.max(0.0) / self.frame.unit).powi(2);
         let own = triangle.map(|p| self.frame.into_local(p));
         let (low, high) = hull(own);
         let gap = |from: DVec3, to: DVec3| (from - high).max(low - to).max(DVec3::ZERO).length_squared();
