@@ -187,8 +187,8 @@ impl Patches {
         self.frame.unit
     }
 
-    /// Whether a point of a patch is nearer than this, to within rounding in single precision: what is
-    /// farther is not looked at.
+    /// Whether a point of a patch is nearer than this, to within rounding in single precision: what
+    /// is farther is not looked at.
     pub fn is_within(&self, p: DVec3, distance: f64) -> bool {
         let local = self.frame.into_local(p).to_array();
         let most = (distance / self.frame.unit).powi(2).min(f64::from(f32::MAX));
