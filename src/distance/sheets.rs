@@ -313,3 +313,26 @@ fn fan(rim: &[DVec3], middle: Option<DVec3>, off: f64, found: &mut Vec<Found>) {
         None => (2..rim.len()).for_each(|n| push([rim[0], rim[n - 1], rim[n]])),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Solid;
+    use crate::distance::compiled_with;
+
+    #[test]
+    fn a_cell_is_left_when_its_run_is_cancelled() {
+        let sheet = Solid::cuboid([4.0, 4.0, 0.01]).translate([0.0, 0.0, 0.3]);
+        let program = compiled_with(&sheet, &Run::default()).unwrap().surface.clone();
+        let known = Patches::new(&[], &Run::default()).unwrap();
+        let run = Run::default();
+        let crossings = Crossings { program: &program, rounding: 1e-9, precision: 1e-6 };
+        let bounds = Bounds::new(DVec3::ZERO, DVec3::ONE);
+        let cell =
+            Cell { crossings, tolerance: 1e-3, bounds, is_sure: true, known: &known, lines: LINES.into(), run: &run };
+        assert!(!cell.sheets().is_empty());
+        run.cancel.cancel();
+        cell.lines.set(LINES);
+        assert!(cell.sheets().is_empty());
+    }
+}

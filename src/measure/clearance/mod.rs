@@ -118,8 +118,9 @@ impl Solid {
     /// solid at rest, so that parts of an assembly are not measured anew in each position. After
     /// that a clearance takes milliseconds where one place is nearest and of meshes and extruded
     /// polygons, some tenths of a second where a gap is even all over and where meshes touch over
-    /// thousands of triangles or overlap, and seconds between threads and the like. Triangles of a
-    /// mesh that lie in one plane are taken together, if nearly all do. The volume of an overlap is
+    /// thousands of triangles or overlap. It takes seconds between threads and the like, and where
+    /// fine round meshes have an even gap or all but fall together. Triangles of a mesh that lie in
+    /// one plane are taken together, if nearly all do. The volume of an overlap is
     /// found as by [`measure`](Solid::measure).
     ///
     /// # Errors
