@@ -291,12 +291,8 @@ impl Monotone for AlphaAnd {
 
     #[inline(always)]
     fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R) {
-        let (one, alpha) = (x.lift(1.0), self.0);
-        let (value, d) = alpha_and(x, y, alpha);
-        let floor = d.max(x.lift(TINY));
-        let scale = 1.0 / (1.0 + alpha);
-        let dx = (one - (x - y * alpha) / floor) * scale;
-        let dy = (one - (y - x * alpha) / floor) * scale;
+        let (value, d) = alpha_and(x, y, self.0);
+        let (dx, dy) = (alpha_slope(x, y, d, self.0), alpha_slope(y, x, d, self.0));
         (value, dx, dy)
     }
 }
@@ -310,9 +306,8 @@ impl<N: ExcessKind> Monotone for PAnd<N> {
 
     #[inline(always)]
     fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R) {
-        let one = x.lift(1.0);
-        let (_, dx, dy) = x.norm_parts_as(y, self.0);
-        (self.value(x, y), one - dx, one - dy)
+        let (_, nx, ny) = x.norm_parts_as(y, self.0);
+        (self.value(x, y), self.0.rest(x, y, nx), self.0.rest(y, x, ny))
     }
 }
 
@@ -448,6 +443,17 @@ fn alpha_and<R: Real>(x: R, y: R, alpha: f64) -> (R, R) {
     (s.min(zero) * (2.0 / (1.0 + alpha)) + product, d)
 }
 
+/// The slope of R_α by x: `(1 − u/D)/(1 + α)` with u = x − αy, which is a small difference where y is small beside x, and
+/// then `y²·(1 − α)/(D·(D + u))`.
+#[inline(always)]
+fn alpha_slope<R: Real>(x: R, y: R, d: R, alpha: f64) -> R {
+    let tiny = x.lift(TINY);
+    let (u, floor) = (x - y * alpha, d.max(tiny));
+    let direct = (x.lift(1.0) - u / floor) * (1.0 / (1.0 + alpha));
+    let small = (y / floor) * (y / (d + u).max(tiny)) * (1.0 - alpha);
+    u.select(small.meet(direct), direct)
+}
+
 /// R_0^m conjunction: that of R_p with p = 2, times a power of the norm that flattens the
 /// corner.
 #[inline(always)]
@@ -459,4 +465,25 @@ pub(super) fn zero_and<R: Real>(x: R, y: R, m: u32) -> R {
         power = saturate(power * norm);
     }
     and * power
+}
+
+#[cfg(test)]
+mod tests {
+    use rvachev_num::Dual;
+
+    use super::*;
+
+    #[test]
+    fn slopes_by_a_large_argument_keep_their_digits() {
+        let large = 1e6;
+        let slope = |rule: Rule| rule.and(Dual::variable(large, 0), Dual::variable(1.0, 1)).gradient()[0];
+        for alpha in [-0.9, 0.0, 0.5] {
+            let (found, exact) = (slope(Rule::Alpha(alpha)), (1.0 - alpha) / 2.0 * large.powi(-2));
+            assert!((found / exact - 1.0).abs() < 1e-5, "alpha {alpha}: {found:e} for {exact:e}");
+        }
+        for p in [1.5, 2.0, 3.0] {
+            let (found, exact) = (slope(Rule::P(Norm::new(p))), (1.0 - 1.0 / p) * large.powf(-p));
+            assert!((found / exact - 1.0).abs() < 1e-5, "p {p}: {found:e} for {exact:e}");
+        }
+    }
 }

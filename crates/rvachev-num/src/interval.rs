@@ -379,6 +379,12 @@ impl Real for Interval {
         }
     }
 
+    #[inline(always)]
+    fn meet(self, o: Interval) -> Interval {
+        let (lo, hi) = (most(self.lo, o.lo), least(self.hi, o.hi));
+        if lo <= hi { Interval { lo, hi } } else { o }
+    }
+
     #[inline(never)]
     fn log2_sum_exp2(self, o: Interval) -> Interval {
         // It rises with both arguments.

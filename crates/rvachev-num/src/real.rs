@@ -104,6 +104,14 @@ pub trait Real:
     /// `nonneg` where `self ≥ 0`, else `neg`; on an undecided interval the hull of both.
     fn select(self, nonneg: Self, neg: Self) -> Self;
 
+    /// This number, of which `other` is the same by another formula that loses more digits: an
+    /// interval takes what both of them hold.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn meet(self, _other: Self) -> Self {
+        self
+    }
+
     /// `log2(2^self + 2^other)` without overflow.
     #[inline(always)]
     fn log2_sum_exp2(self, other: Self) -> Self {
