@@ -208,8 +208,8 @@ fn a_mesh_in_a_hollow_has_its_even_gap() {
 fn screw(by: f64) -> Solid {
     let section =
         Profile::polygon([[-0.3, -0.42 - by], [0.6 + by, -0.12 - by], [0.6 + by, 0.12 + by], [-0.3, 0.42 + by]]);
-    let ridge = section.sweep_helix(&Helix::new(4.0, 1.25, 3.0));
-    ridge.union(Solid::cylinder(4.0 + by, 6.0), RFunction::MIN_MAX)
+    let ridge = section.sweep_helix(&Helix::new(4.0, 1.25, 2.5));
+    ridge.union(Solid::cylinder(4.0 + by, 5.0), RFunction::MIN_MAX)
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::support::{RULES, Random, extra_seed, frame_of, random_solid, value};
 
 fn config() -> ProptestConfig {
     ProptestConfig {
-        cases: 24,
+        cases: 12,
         rng_seed: RngSeed::Fixed(20 + extra_seed()),
         failure_persistence: None,
         ..ProptestConfig::default()
