@@ -1,6 +1,6 @@
 //! Which leaves are on a line, a ring or a grid.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2, TAU};
 
 use glam::{DMat3, DVec3};
 
@@ -25,7 +25,9 @@ pub(super) fn patterns_of(leaves: &[&Leaf], runs: &[usize], size: f64) -> Vec<Pa
         }
     }
     let mut patterns: Vec<(usize, Pattern)> = Vec::new();
-    for group in groups {
+    for mut group in groups {
+        // In the order of their places: that in which they were found may hang on the last digits of how well they fit.
+        group.sort_by(|a, b| along(leaves[*a].centre).total_cmp(&along(leaves[*b].centre)));
         let parameters = leaves[group[0]].parameters();
         let mut group = Group { leaves, left: group, near: PLACED * size };
         while let Some((saved, best)) = group.best(parameters) {
@@ -35,6 +37,11 @@ pub(super) fn patterns_of(leaves: &[&Leaf], runs: &[usize], size: f64) -> Vec<Pa
     }
     patterns.sort_by_key(|(saved, pattern)| (usize::MAX - saved, pattern.leaves[0]));
     patterns.into_iter().map(|(_, pattern)| pattern).collect()
+}
+
+/// How far along a place is, in a direction across which no two places of a pattern are.
+fn along(place: DVec3) -> f64 {
+    place.dot(DVec3::new(1.0, FRAC_1_SQRT_2, FRAC_1_PI))
 }
 
 impl Leaf {
@@ -279,6 +286,19 @@ mod tests {
         let Layout::Line { step, .. } = found[2].layout else { panic!("{found:?}") };
         assert!((step.abs() - DVec3::new(5.0, 2.0, 0.0)).length() < 1e-9);
         assert!(found[2].leaves.len() == 4 && !found[2].leaves.contains(&15));
+    }
+
+    #[test]
+    fn patterns_are_the_same_in_whatever_order_leaves_are() {
+        let grid = |k: usize| cut(7.0 * (k % 3) as f64, 9.0 * (k / 3) as f64, 1.5);
+        let pattern = |order: [usize; 6]| {
+            let leaves = order.map(grid);
+            let Layout::Grid { first, steps, counts } = found(&leaves, 30.0)[0].layout else { panic!("no grid") };
+            (first, steps, counts)
+        };
+        for order in [[5, 4, 3, 2, 1, 0], [2, 5, 0, 4, 3, 1]] {
+            assert_eq!(pattern(order), pattern([0, 1, 2, 3, 4, 5]));
+        }
     }
 
     /// Bores from all six faces of a cube.
