@@ -254,6 +254,17 @@ mod tests {
     }
 
     #[test]
+    fn an_error_is_that_of_the_first_job_whichever_ends_first() {
+        let first = First::new();
+        first.unless(2, || Err::<(), _>(2));
+        first.unless(1, || {
+            first.unless(0, || Err::<(), _>(0));
+            Err::<(), _>(1)
+        });
+        assert_eq!(first.or(()), Err(0));
+    }
+
+    #[test]
     fn jobs_are_begun_in_their_order() {
         let begun = Mutex::new(Vec::new());
         // The lock is taken after the number is: no more than the other threads come between.
