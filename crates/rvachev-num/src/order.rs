@@ -54,7 +54,7 @@ mod tests {
     fn the_order_is_that_of_a_stable_sort() {
         let odd = [0.0, -0.0, f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e-320, -3.5, 7.0];
         for count in [0, 1, 2, 9, 40, 1000] {
-            let number = |n: usize| if n % 3 == 0 { odd[n * 7 % 9] } else { ((n * 7919) % 64) as f64 - 20.0 };
+            let number = |n: usize| if n.is_multiple_of(3) { odd[n * 7 % 9] } else { ((n * 7919) % 64) as f64 - 20.0 };
             let items: Vec<(f64, usize)> = (0..count).map(|n| (number(n), n)).collect();
             let places = |items: &[(f64, usize)]| items.iter().map(|item| item.1).collect::<Vec<_>>();
             let (mut own, mut expected) = (items.clone(), items.clone());
