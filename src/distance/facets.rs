@@ -1,6 +1,7 @@
 //! Triangles near a surface, and their vertices on it.
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::crease::{Plane, meet};
 use super::seam::SETTLED;
@@ -134,7 +135,7 @@ impl Facets {
         // The corners by their vertices.
         let mut order: Vec<usize> = (0..corners.len()).collect();
         let vertices: Vec<usize> = corners.iter().map(|(t, k)| self.triangles[*t][*k] as usize).collect();
-        order.sort_by_key(|n| vertices[*n]);
+        order::rising(&mut order, |n| vertices[*n] as f64);
         for aside in ASIDE {
             let beside = |&(t, k): &(usize, usize)| {
                 let triangle = self.triangles[t].map(|v| self.positions[v as usize]);

@@ -19,7 +19,7 @@ use crate::mesh::{Slender, Slopes};
 use crate::solid::Node;
 use crate::{Bounds, Cancelled, Mesh, RFunction, Run, Solid};
 use rvachev_field::{Patch, Patches};
-use rvachev_num::jobs;
+use rvachev_num::{jobs, order};
 
 /// So many boxes are meshed, those of the farthest spots, and boxes in these.
 const BOXES: usize = 512;
@@ -78,7 +78,7 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
     };
     let found = if depth == 0 { Vec::new() } else { groups(&spots, tolerance, run)? };
     let mut groups: Vec<Group> = found.into_iter().flat_map(in_parts).collect();
-    groups.sort_by(|(_, a), (_, b)| worst(b).total_cmp(&worst(a)));
+    order::falling(&mut groups, |(_, numbers)| worst(numbers));
     groups.truncate(BOXES);
     let mut left = vec![true; spots.len()];
     let mended = |(bounds, numbers): &Group, most: usize| {
@@ -192,7 +192,7 @@ fn parted((bounds, numbers): Group, spots: &[Spot], size: f64, tolerance: f64) -
 /// meshed, about those that are farthest off.
 fn groups(spots: &[Spot], tolerance: f64, run: &Run) -> Result<Vec<Group>, Cancelled> {
     let mut order: Vec<usize> = (0..spots.len()).collect();
-    order.sort_by(|a, b| spots[*b].off.total_cmp(&spots[*a].off));
+    order::falling(&mut order, |a| spots[*a].off);
     let mut groups: Vec<Group> = Vec::new();
     for (count, number) in order.into_iter().enumerate() {
         often(count, run)?;

@@ -13,6 +13,7 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use glam::{DAffine3, DVec2, IVec2};
+use rvachev_num::order;
 
 use super::compiled_with;
 use crate::eval::CompileError;
@@ -174,7 +175,7 @@ fn cut(curves: &[Curve], more: &[Vec<f64>], side: f64, rounding: f64, run: &Run)
         cuts.extend(more.get(number).into_iter().flatten());
         let others = squares.near(curve.bounds()).into_iter().filter(|other| *other as usize != number);
         cuts.extend(others.flat_map(|other| curve.cuts(&curves[other as usize], rounding)));
-        cuts.sort_by(f64::total_cmp);
+        order::numbers(&mut cuts);
         parts
             .extend(cuts.windows(2).map(|ends| curve.part([ends[0], ends[1]])).filter(|part| part.length() > rounding));
     }

@@ -10,6 +10,7 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::facets::{CREASE, Facets};
 use super::panes::{OFF, panes};
@@ -355,7 +356,7 @@ impl Quilt {
     pub(super) fn reached(&self, part: f64) -> f64 {
         let mut far: Vec<[f64; 2]> =
             self.doubts.iter().filter(|own| own.area > 0.0).map(|own| [own.off, own.area]).collect();
-        far.sort_by(|a, b| b[0].total_cmp(&a[0]));
+        order::falling(&mut far, |a| a[0]);
         let of_spots: f64 = self.spots.iter().map(|spot| area_of(&spot.patch)).sum();
         let mut left = part * (self.area + of_spots);
         for [off, area] in far {
@@ -411,7 +412,7 @@ fn cross<'a>(
         }
     }
     let mut asked: Vec<(u32, [DVec3; 2])> = asked.into_iter().collect();
-    asked.sort_by_key(|(seam, _)| *seam);
+    order::rising(&mut asked, |(seam, _)| f64::from(*seam));
     seams.cross(&asked, positions, slopes, run)
 }
 

@@ -15,7 +15,7 @@ use crate::eval::Region;
 use crate::mesh::{Hidden, Slopes, Subject};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::{Patch, Patches};
-use rvachev_num::jobs;
+use rvachev_num::{jobs, order};
 
 /// Nearer to the surface than this part of the size, points may be on either side by rounding
 /// errors.
@@ -139,7 +139,7 @@ impl Cell<'_> {
         let (_, slope) = self.crossings.program.gradient(self.bounds.center());
         let slope = slope.abs();
         let mut axes = [0, 1, 2];
-        axes.sort_by(|a, b| slope[*b].total_cmp(&slope[*a]));
+        order::falling(&mut axes, |a| slope[*a]);
         let mut found = Vec::new();
         // Beside a rim the slope leads there, and not across the sheet.
         for axis in axes.into_iter().take(if self.is_sure { 3 } else { 1 }) {

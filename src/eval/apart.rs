@@ -6,6 +6,8 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
+use rvachev_num::order;
+
 use super::accuracy::Accuracy;
 use super::bend::Bend;
 use super::compile::{Compiled, kept};
@@ -264,7 +266,7 @@ impl Near {
         let mut between = Vec::new();
         // From left to right, each with those that begin before it ends.
         let mut order: Vec<usize> = (0..boxes.len()).collect();
-        order.sort_by(|a, b| around[*a].min.x.total_cmp(&around[*b].min.x));
+        order::rising(&mut order, |a| around[*a].min.x);
         for (at, &first) in order.iter().enumerate() {
             for &second in order[at + 1..].iter().take_while(|other| around[**other].min.x <= around[first].max.x) {
                 let bounds = around[first].intersection(&around[second]).intersection(&inside);

@@ -6,6 +6,7 @@
 //! the values at the ends and the slopes leave of the piece is halved, the nearer half first.
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::bracket::Bracket;
 use super::crossing::distance;
@@ -121,7 +122,7 @@ fn cuts(program: &Program, (origin, direction): (DVec3, DVec3), [near, far]: [f6
     let creases = program.creases(&Bounds::new(ends[0].min(ends[1]), ends[0].max(ends[1])));
     let distances = creases.iter().map(|crease| distance(crease, origin, direction));
     let mut crossed: Vec<f64> = distances.filter(|t| t.is_finite()).collect();
-    crossed.sort_by(f64::total_cmp);
+    order::numbers(&mut crossed);
     let mut cuts: Vec<f64> = Vec::with_capacity(2 * crossed.len());
     for end in crossed.into_iter().flat_map(|t| [t - gap, t + gap]) {
         if end > cuts.last().copied().unwrap_or(near) && end < far {

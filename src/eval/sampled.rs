@@ -1,8 +1,7 @@
 //! Values of a program at many points.
 
 use glam::DVec3;
-use rayon::prelude::*;
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 use super::point::limited;
 use super::program::Program;
@@ -27,8 +26,8 @@ impl Program {
         let at_once = (VALUES / self.leaf_count().max(1)).clamp(8, MOST);
         let meter = Meter::new(run, count.div_ceil(at_once));
         let mut values = vec![0.0; count];
-        let chunks = values.par_chunks_mut(at_once).enumerate();
-        chunks.try_for_each_init(Evaluator::new, |evaluator, (chunk, values)| {
+        let chunks = values.chunks_mut(at_once).enumerate().collect();
+        jobs::try_taking_with(chunks, Evaluator::new, |evaluator, (chunk, values): (usize, &mut [f64])| {
             meter.step()?;
             let mut axes = [[0.0; MOST]; 3];
             for i in 0..values.len() {

@@ -14,6 +14,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec2, DVec3};
+use rvachev_num::order;
 
 use super::harmonics::{Around, FEWEST, MOST, Repeat, STILL, TURNING, extremes, still, turned};
 use super::linear::{quantile, solved};
@@ -66,7 +67,7 @@ impl Belt {
     /// The largest angle about the axis that there are no points in, and its middle.
     pub(super) fn gap(&self) -> [f64; 2] {
         let mut angles: Vec<f64> = self.points.iter().map(|p| p.truncate().to_angle()).collect();
-        angles.sort_by(f64::total_cmp);
+        order::numbers(&mut angles);
         let around = angles.first().map_or(TAU, |first| first + TAU);
         let next = angles.iter().copied().skip(1).chain([around]);
         let gaps = angles.iter().zip(next).map(|(a, b)| [b - a, 0.5 * (a + b)]);
@@ -104,7 +105,7 @@ pub(super) fn centered(points: &[DVec3], axis: DVec3, center: DVec3, run: &Run) 
             }
         }
     }
-    found.sort_by(|a, b| a.left.total_cmp(&b.left));
+    order::rising(&mut found, |a| a.left);
     Ok(found)
 }
 

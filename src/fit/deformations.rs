@@ -6,6 +6,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use glam::{DMat3, DVec2, DVec3};
+use rvachev_num::order;
 
 use super::cost::Cost;
 use super::deformable::Deformable;
@@ -73,7 +74,7 @@ pub(super) fn search(
         }
         let mut found =
             starts.iter().map(|s| fit(*s, &few, early, [2, 5])).collect::<Result<Vec<(f64, Deformable)>, _>>()?;
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order::rising(&mut found, |a| a.0);
         for (_, model) in found.into_iter().take(3) {
             let next = fit(model, &more, cost, [3, 4])?;
             if best.as_ref().is_none_or(|b| next.0 < b.0) {

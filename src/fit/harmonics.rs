@@ -10,6 +10,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec2, DVec3};
+use rvachev_num::order;
 
 use super::linear::{circle, quantile, solved};
 use super::waves::{WAVES, column, sums};
@@ -203,7 +204,7 @@ fn repeats(local: &[DVec3], height: f64) -> Vec<Repeat> {
         found.push(Repeat { explained, ..extremes(count, x[0], &waves) });
     }
     let best = found.iter().map(|r| r.explained).fold(0.0, f64::max);
-    found.sort_by(|a, b| b.explained.total_cmp(&a.explained));
+    order::falling(&mut found, |a| a.explained);
     let near = |r: &Repeat| r.explained > best - NEARLY;
     if let Some(at) = (0..found.len()).filter(|i| near(&found[*i])).max_by_key(|i| found[*i].count) {
         let largest = found.remove(at);

@@ -1,6 +1,7 @@
 //! Small dense linear algebra: positive definite systems, principal axes.
 
 use glam::{DMat3, DVec2, DVec3};
+use rvachev_num::order;
 
 /// The Cholesky factor of a symmetric positive definite matrix of which the lower triangle is
 /// given, and the inverses of its diagonal; only the rows and columns that are `free` count. `None`
@@ -120,7 +121,7 @@ pub(super) fn eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], DMat3) {
         }
     }
     let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| m[i][i].total_cmp(&m[j][j]));
+    order::rising(&mut order, |i| m[*i][*i]);
     let axis = |k: usize| DVec3::from_array(v[order[k]]).normalize_or(DVec3::AXES[k]);
     let (x, y) = (axis(0), axis(1));
     (order.map(|i| m[i][i].max(0.0)), DMat3::from_cols(x, y, x.cross(y)))

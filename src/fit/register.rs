@@ -27,7 +27,7 @@ use crate::distance::compiled_with;
 use crate::eval::Program;
 use crate::geom::PointCloud;
 use crate::{Cancelled, CellSize, MeshSettings, Run, Solid};
-use rvachev_num::jobs;
+use rvachev_num::{jobs, order};
 
 const NAMES: [&str; PARAMETERS] = ["turn x", "turn y", "turn z", "shift x", "shift y", "shift z", "ln scale"];
 
@@ -272,7 +272,7 @@ impl Model<'_> {
                 let pose = align.descend(poses[n], self.widths(width, steps), run)?;
                 Ok((align.cost(pose, run)?, pose))
             })?;
-            found.sort_by(|a, b| a.0.total_cmp(&b.0));
+            order::rising(&mut found, |a| a.0);
             found.truncate(KEPT.get(round).copied().unwrap_or(1));
             poses = found.into_iter().map(|(_, pose)| pose).collect();
         }

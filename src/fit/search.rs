@@ -8,6 +8,7 @@
 //! ```
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::cost::Cost;
 use super::kernel::Model;
@@ -81,7 +82,7 @@ impl<'a> Search<'a> {
     /// The first stage of many starts, the second of the best.
     fn best_of(&mut self, starts: Vec<Superquadric>, most: usize) -> Result<Candidate, Cancelled> {
         let mut first = starts.into_iter().map(|s| self.fit(s, false, true)).collect::<Result<Vec<_>, _>>()?;
-        first.sort_by(|a, b| a.score.total_cmp(&b.score));
+        order::rising(&mut first, |a| a.score);
         let mut best: Option<Candidate> = None;
         for candidate in first.into_iter().take(most) {
             let next = self.fit(candidate.model, true, false)?;

@@ -16,6 +16,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DMat3, DVec2, DVec3};
+use rvachev_num::order;
 
 use super::linear::{median, quantile, solved};
 
@@ -141,7 +142,7 @@ fn smooth(mut ring: Vec<DVec2>) -> Option<Vec<f64>> {
     if ring.len() < 16 {
         return None;
     }
-    ring.sort_by(|a, b| a.x.total_cmp(&b.x));
+    order::rising(&mut ring, |a| a.x);
     let next = |i: usize| {
         let wrap = if i + 1 == ring.len() { DVec2::new(TAU, 0.0) } else { DVec2::ZERO };
         ring[(i + 1) % ring.len()] + wrap

@@ -1,6 +1,7 @@
 //! From points to a supershape: the superellipsoid first, then the search, then the choice.
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::check::check_depth;
 use super::error::FitError;
@@ -61,7 +62,7 @@ pub(super) fn recover_shape(
             let found = mixture.criterion_of(&rough, &polished, settings.cost);
             *criterion = if found.is_nan() { f64::NEG_INFINITY } else { found };
         }
-        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        order::falling(&mut ranked, |a| a.0);
         ranked.truncate(kept);
     }
     let samples = Samples::<f64>::new(points.iter().copied());

@@ -1,6 +1,7 @@
 //! Where the search for a superellipsoid begins.
 
 use glam::{DMat3, DVec2, DVec3};
+use rvachev_num::order;
 
 use super::linear::{Principal, median};
 use super::superquadric::Superquadric;
@@ -53,7 +54,7 @@ impl Frame {
                 }
                 middle += 0.5 * order[..ends].iter().map(along).sum::<f64>() / ends as f64;
                 let mut deep: Vec<f64> = order[..ends].iter().map(|i| seen[*i].z).collect();
-                deep.sort_by(f64::total_cmp);
+                order::numbers(&mut deep);
                 depth += 0.25 * (deep[(ends - 1) / 2] + deep[ends / 2]);
             }
             depths.push(depth);

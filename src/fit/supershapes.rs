@@ -10,6 +10,7 @@
 use std::f64::consts::{FRAC_PI_2, LN_2, TAU};
 
 use glam::{DMat3, DVec3};
+use rvachev_num::order;
 
 use super::centers::{Belt, Centered, centered};
 use super::cost::Cost;
@@ -120,7 +121,7 @@ impl<'a> ShapeSearch<'a> {
 
     fn all(&mut self, starts: Vec<Supershaped>, more: bool, rounds: usize) -> Result<Vec<Judged>, Cancelled> {
         let mut judged = starts.into_iter().map(|s| self.fit(s, more, rounds)).collect::<Result<Vec<_>, _>>()?;
-        judged.sort_by(|a, b| a.score.total_cmp(&b.score));
+        order::rising(&mut judged, |a| a.score);
         Ok(judged)
     }
 
@@ -145,7 +146,7 @@ impl<'a> ShapeSearch<'a> {
     /// The three best axes, no two alike.
     fn axes(&self, quadric: &Superquadric) -> Vec<Around> {
         let mut axes = self.all_axes(quadric);
-        axes.sort_by(|a, b| b.explained().total_cmp(&a.explained()));
+        order::falling(&mut axes, |a| a.explained());
         let mut kept: Vec<Around> = Vec::new();
         for axis in axes {
             if kept.len() < 3 && kept.iter().all(|k| k.frame.z_axis.dot(axis.frame.z_axis).abs() < SAME) {
@@ -231,7 +232,7 @@ impl<'a> ShapeSearch<'a> {
         let mut best = self.all(different(first), true, 2)?;
         if best.first().is_some_and(|top| self.is_seen_in_part(&top.model)) {
             best.extend(self.elsewhere(&axes)?);
-            best.sort_by(|a, b| a.score.total_cmp(&b.score));
+            order::rising(&mut best, |a| a.score);
         }
         let mut two = Vec::new();
         for k in 0..3 {
@@ -249,7 +250,7 @@ impl<'a> ShapeSearch<'a> {
             let extended = self.all(others, false, 3)?;
             let next: Vec<Supershaped> = extended.into_iter().take(3).map(|j| j.model).collect();
             best.extend(self.all(next, true, 2)?);
-            best.sort_by(|a, b| a.score.total_cmp(&b.score));
+            order::rising(&mut best, |a| a.score);
             let top = best[0].model;
             let mut other = lobes(&top, is_good);
             let opposite = top.opposite();
@@ -260,13 +261,13 @@ impl<'a> ShapeSearch<'a> {
             let next: Vec<Supershaped> =
                 other.into_iter().take(4).chain(turned.into_iter().take(2)).map(|j| j.model).collect();
             best.extend(self.all(next, true, 2)?);
-            best.sort_by(|a, b| a.score.total_cmp(&b.score));
+            order::rising(&mut best, |a| a.score);
             // Many lobes hide on few points on which side of 2 their exponents are.
             let opposite = best[0].model.opposite();
             let tied = if opposite.meridian.m == 4 { Ties::Stretched } else { Ties::Profiled };
             best.extend(self.all(vec![opposite.tied(tied), opposite.tied(Ties::Free)], true, 3)?);
         }
-        best.sort_by(|a, b| a.score.total_cmp(&b.score));
+        order::rising(&mut best, |a| a.score);
         let mut found: Vec<Supershaped> = Vec::new();
         for judged in best.iter().take(3) {
             found.push(judged.model);

@@ -8,8 +8,7 @@
 //!           y ↓ height
 //! ```
 
-use rayon::prelude::*;
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 use super::transfer::{from_linear, to_byte};
 use crate::{Cancelled, Run};
@@ -133,7 +132,7 @@ impl<P: Copy + Send + Sync> Image<P> {
         let meter = Meter::new(run, height);
         let mut pixels = vec![blank; width as usize * height as usize];
         run.install(|| {
-            pixels.par_chunks_exact_mut(width as usize).enumerate().try_for_each(|(y, row)| {
+            jobs::try_chunks_mut(&mut pixels, width as usize, |y, row| {
                 meter.check()?;
                 fill(y as u32, row);
                 meter.add(1);

@@ -18,11 +18,12 @@ mod flipped;
 mod measure;
 
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 
 use self::attributes::Attributes;
 use self::corner_normals::CornerNormals;
 pub(crate) use self::findings::Findings;
+use rvachev_num::jobs;
+
 use crate::Bounds;
 
 /// A triangle mesh: positions and triangles that index them, and perhaps normals per vertex
@@ -133,8 +134,11 @@ fn first<T: Sync>(list: &[T], holds: impl Fn(&T) -> bool + Sync) -> Option<usize
     if list.len() <= MANY {
         return list.iter().position(holds);
     }
-    let in_chunk = |(n, chunk): (usize, &[T])| chunk.iter().position(&holds).map(|at| n * MANY + at);
-    list.par_chunks(MANY).enumerate().find_map_first(in_chunk)
+    let in_chunk = |n: usize| {
+        let chunk = &list[n * MANY..list.len().min((n + 1) * MANY)];
+        chunk.iter().position(&holds).map(|at| n * MANY + at)
+    };
+    jobs::first(list.len().div_ceil(MANY), in_chunk)
 }
 
 impl Mesh {

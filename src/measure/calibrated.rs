@@ -32,7 +32,7 @@ use crate::eval::Narrowed;
 use crate::program::Program;
 use crate::space::{Block, Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::jobs;
+use rvachev_num::{jobs, order};
 
 /// Cells along the longest side at first, and how many there may be: more take seconds.
 const FIRST: f64 = 12.0;
@@ -225,7 +225,7 @@ fn cells_needed([(cells_before, before), (cells, open)]: [(f64, f64); 2], enough
 /// The cells that leave most open, until what the others leave is at most `left`.
 fn chosen(open: &[f64], left: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..open.len()).collect();
-    order.sort_unstable_by(|a, b| open[*a].total_cmp(&open[*b]).then(a.cmp(b)));
+    order::rising(&mut order, |n| open[*n]);
     let mut sum = 0.0;
     let kept = order.iter().take_while(|at| {
         sum += open[**at];

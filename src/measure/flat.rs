@@ -1,6 +1,6 @@
 //! Solids with flat faces: what is inside and the area of the surface, summed up to rounding.
 
-use rayon::prelude::*;
+use rvachev_num::jobs;
 
 use super::cuts::{self, Flat};
 use super::integral::unfolded;
@@ -20,11 +20,11 @@ pub(super) fn flat(cells: &[(Bounds, Program)], run: &Run) -> Result<Option<(Mom
     for _ in 0..=HALVINGS {
         run.check()?;
         let told = |(bounds, program): &(Bounds, Program)| match cuts::flat(program, bounds) {
-            Flat::Exact(moments, area) => Some(Some((moments, area))),
-            Flat::Unknown => Some(None),
-            Flat::Other => None,
+            Flat::Exact(moments, area) => Ok(Some((moments, area))),
+            Flat::Unknown => Ok(None),
+            Flat::Other => Err(()),
         };
-        let Some(told) = cells.par_iter().map(told).collect::<Option<Vec<_>>>() else { return Ok(None) };
+        let Ok(told) = jobs::try_in_order(cells.len(), |n| told(&cells[n])) else { return Ok(None) };
         let mut open = Vec::new();
         for (cell, told) in cells.iter().zip(told) {
             match told {

@@ -17,7 +17,7 @@ use crate::program::Program;
 use crate::space::{Block, Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::Zone;
-use rvachev_num::jobs;
+use rvachev_num::{jobs, order};
 
 /// Cells begin so much before the box, as a part of their side, that hardly ever a face is in a
 /// side of one.
@@ -182,7 +182,7 @@ pub(super) fn unfolded(program: Program, cell: &Bounds) -> Program {
 /// many.
 fn chosen(cells: &[Cell], left: f64, most: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..cells.len()).collect();
-    order.sort_unstable_by(|a, b| cells[*a].held.open().total_cmp(&cells[*b].held.open()).then(a.cmp(b)));
+    order::rising(&mut order, |n| cells[*n].held.open());
     let mut open = 0.0;
     let kept = order.iter().take_while(|at| {
         open += cells[**at].held.open();

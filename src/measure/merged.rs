@@ -13,6 +13,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 use rvachev_field::Polygon;
+use rvachev_num::order;
 
 use crate::{Cancelled, Run};
 
@@ -39,7 +40,7 @@ pub(super) fn merged(all: &[[DVec3; 3]], off: f64, run: &Run) -> Result<Vec<[DVe
     let beside = |n: usize| sides(n).map(|[from, to]| by_side.get(&[to, from]).copied());
     // Faces one by one, from their largest triangle on.
     let mut order: Vec<usize> = (0..all.len()).collect();
-    order.sort_by(|a, b| planes[*b].area.total_cmp(&planes[*a].area).then(a.cmp(b)));
+    order::falling(&mut order, |n| planes[*n].area);
     let mut faces = vec![usize::MAX; all.len()];
     let mut found = Vec::new();
     for first in order {
@@ -185,7 +186,7 @@ fn contours(border: Vec<([u32; 2], DVec3)>, flat: impl Fn(DVec3) -> DVec2) -> Ve
 /// With one height for all points that are about as high.
 fn levelled(mut contours: Vec<Vec<DVec2>>, off: f64) -> Vec<Vec<DVec2>> {
     let mut points: Vec<&mut DVec2> = contours.iter_mut().flatten().collect();
-    points.sort_by(|a, b| a.y.total_cmp(&b.y));
+    order::rising(&mut points, |a| a.y);
     let mut level = f64::NEG_INFINITY;
     for p in points {
         if p.y - level > 2.0 * off {

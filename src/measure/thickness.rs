@@ -17,7 +17,7 @@
 //! Field* (2012), section 3.
 
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
+use rvachev_num::jobs;
 
 use super::ThicknessReport;
 use super::exact::{Triangles, facets};
@@ -119,7 +119,8 @@ fn of_facets(Triangles { all, rounding }: &Triangles, fine: &Fine, run: &Run) ->
         to_search.check()?;
         to_search.report(found.len() as f64 / parts.len() as f64);
         let radius = |(p, parent): &(DVec3, u32)| walls.ball(*p, normals[*parent as usize]?, largest, SLACK, FACING);
-        found.par_extend(some.par_iter().map(|part| radius(part).map_or(f64::INFINITY, |radius| 2.0 * radius)));
+        let thickness = |n: usize| radius(&some[n]).map_or(f64::INFINITY, |radius| 2.0 * radius);
+        found.extend(jobs::in_order(some.len(), thickness));
     }
     Ok(found)
 }

@@ -31,8 +31,8 @@ use self::overlap::{LISTED, Overlaps};
 use crate::geom::Mesh;
 use crate::geom::figures::{point, size};
 use crate::{Cancelled, Run};
-use rvachev_num::Bounds;
 use rvachev_num::figures;
+use rvachev_num::{Bounds, jobs};
 
 /// The findings of [`Mesh::check`].
 ///
@@ -214,7 +214,8 @@ impl Mesh {
     fn examined(&self, run: &Run) -> Result<MeshReport, Cancelled> {
         // How long each stage takes, more or less.
         let [to_turn, to_compare, to_sort] = run.stages([0.4, 0.5, 0.1]);
-        let (fans, measure) = rayon::join(|| Fans::new(self, &to_turn), || self.measure_with(run));
+        let (mut fans, mut measure) = (Err(Cancelled), Err(Cancelled));
+        jobs::both(&mut || fans = Fans::new(self, &to_turn), &mut || measure = self.measure_with(run));
         let (fans, measure) = (fans?, measure?);
         let overlaps = Overlaps::find(self, &fans, LISTED, &to_compare)?;
         let duplicate_vertices = duplicate_vertices(self, &to_sort)?;

@@ -36,7 +36,6 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use glam::{DVec3, Vec3, Vec3A};
-use rayon::prelude::*;
 
 use self::joined::{UPPER, proposals};
 pub(super) use self::lost::BORE;
@@ -54,8 +53,8 @@ use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
 use super::table::CaseTable;
 use crate::geom::{Mesh, MeshError};
 use crate::{Cancelled, Run};
-use rvachev_num::Bounds;
 use rvachev_num::Meter;
+use rvachev_num::{Bounds, jobs};
 
 mod block_vertices;
 mod cells;
@@ -367,11 +366,11 @@ fn sample_all<'a, S: Sampler>(
     let all = Mutex::new((Parts::new(blocks, neighbours, features), 0));
     let queue = Queue { all, waiting: Mutex::default() };
     let worker = || Worker::new(sampler, lattice, features);
-    let sample = |worker: &mut Worker<'_, S>, (n, blocks)| {
+    let sample = |worker: &mut Worker<'_, S>, n: usize, blocks: &[[u32; 3]]| {
         let batch = worker.sample(n * BATCH, blocks, &meter)?;
         queue.add(n, batch)
     };
-    blocks.chunks(BATCH).enumerate().par_bridge().map_init(worker, sample).collect::<Result<(), ExtractError>>()?;
+    jobs::try_chunks_with(blocks, BATCH, worker, sample)?;
     queue.into_parts()
 }
 

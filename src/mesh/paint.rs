@@ -5,11 +5,10 @@
 //! paint of a leaf changes, each corner has the mixture at its own place.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::eval::Palette;
 use crate::{Cancelled, Mesh, Paint, Run};
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 /// The colours of the corners of the triangles, given their owners.
 pub(crate) fn corner_colors(
@@ -44,7 +43,7 @@ pub(crate) fn each_triangle<T: Clone + Default + Send>(
     let triangles = mesh.triangles();
     let mut told = vec![T::default(); triangles.len()];
     let meter = Meter::new(run, triangles.len().div_ceil(AT_ONCE));
-    told.par_chunks_mut(AT_ONCE).enumerate().try_for_each(|(chunk, told)| {
+    jobs::try_chunks_mut(&mut told, AT_ONCE, |chunk, told| {
         meter.step()?;
         for (nth, told) in (chunk * AT_ONCE..).zip(told) {
             *told = tell(nth, triangles[nth]);

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3A};
-use rayon::prelude::*;
+use rvachev_num::jobs;
 
 use super::blocks::{Blocks, Programs, exact_nodes};
 use super::deciders::Deciders;
@@ -83,7 +83,7 @@ impl SolidSampler<'_> {
         let band = cells * lattice.step();
         let Blocks { cells: blocks, programs, exact } = blocks;
         let mut groups = vec![0; blocks.len()];
-        groups.par_chunks_mut(BATCH).enumerate().for_each(|(batch, groups)| {
+        jobs::for_chunks_mut(&mut groups, BATCH, |batch, groups| {
             let mut heads: Vec<u32> = Vec::new();
             for (n, group) in (batch * BATCH..).zip(groups) {
                 // The latest first: blocks that follow each other are near each other.

@@ -21,6 +21,8 @@ mod quadric;
 mod start;
 
 use self::collapse::Collapse;
+use rvachev_num::order;
+
 use super::check::intersecting;
 use super::deviation::{self, Probe};
 use super::error::MeshingError;
@@ -53,10 +55,7 @@ pub(super) fn simplified(
     let most = tolerance.max(ROUNDING * deviation::largest(probes));
     let mut parts = vec![1.0; mesh.positions().len()];
     let mut along_x: Vec<u32> = (0..parts.len() as u32).collect();
-    along_x.sort_unstable_by(|a, b| {
-        let [a, b] = [a, b].map(|n| mesh.positions()[*n as usize].x);
-        a.total_cmp(&b)
-    });
+    order::rising(&mut along_x, |n| f64::from(mesh.positions()[*n as usize].x));
     for attempt in 0..ATTEMPTS {
         let [from, to] = [attempt, attempt + 1].map(|n| 1.0 - 0.25f64.powi(n as i32));
         let [to_draw, to_check, to_compare] = run.stage(from, to).stages([0.8, 0.1, 0.1]);

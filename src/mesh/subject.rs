@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
+use rvachev_num::jobs;
 
 use super::blocks::Blocks;
 use super::deviation::Probe;
@@ -128,12 +128,11 @@ impl Whole {
             value > slack * slope.length()
         };
         let beyond = |p: &&Vec3| !inner.contains(p.as_dvec3()) && is_inside(p.as_dvec3());
-        for positions in mesh.positions().chunks(AT_ONCE) {
+        jobs::try_chunks(mesh.positions(), AT_ONCE, |_, positions| {
             run.check()?;
-            if let Some(at) = positions.par_iter().find_first(beyond) {
-                return Err(MeshingError::LeavesBounds { at: at.as_dvec3() });
-            }
-        }
+            let found = positions.iter().find(beyond);
+            found.map_or(Ok(()), |at| Err(MeshingError::LeavesBounds { at: at.as_dvec3() }))
+        })?;
         Ok(())
     }
 

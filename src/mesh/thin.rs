@@ -21,7 +21,7 @@ use super::resolve::{Among, Unresolved, unresolved_cells};
 use crate::eval::Program;
 use crate::geom::{ThinPlace, ThinReport};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::jobs;
+use rvachev_num::{jobs, order};
 
 /// Cells of a place that its thickness is sought in.
 const ASKED: usize = 8;
@@ -90,7 +90,7 @@ pub(super) fn thin_report(
     places.retain(|place| place.len() > 1 || !cells[place[0]].is_mixed);
     let count = places.iter().map(Vec::len).sum();
     // The largest first; of as many cells, that which is found first.
-    places.sort_by_key(|place| (usize::MAX - place.len(), place[0]));
+    order::falling(&mut places, |place| place.len() as f64);
     let listed = &places[..places.len().min(ThinReport::LISTED)];
     let measured = |place: &Vec<usize>| {
         to_measure.check()?;

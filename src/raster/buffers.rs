@@ -1,14 +1,13 @@
 //! The buffers of a picture: depth, stencil, and which operand's which face is seen.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::error::RasterError;
 use super::layers::{Facing, LayerSource, Tile};
 use super::target::{NOTHING, REVERSED, Target};
 use super::view::RasterView;
 use crate::{Cancelled, Image, Run};
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 /// What is seen at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,7 +133,7 @@ impl Buffers {
 
     /// Clears the points whose stencil does not pass the test.
     pub fn keep(&mut self, test: impl Fn(i32) -> bool + Sync) {
-        self.tiles.par_iter_mut().for_each(|target| target.keep(&test));
+        self.each(&|_, target| target.keep(&test));
     }
 
     /// Takes what is nearer in `other`.
@@ -144,18 +143,23 @@ impl Buffers {
     /// [`RasterError::Size`] if it is of another size.
     pub fn merge(&mut self, other: &Buffers) -> Result<(), RasterError> {
         self.view.fits([other.view.width, other.view.height])?;
-        self.tiles.par_iter_mut().zip(&other.tiles).for_each(|(target, other)| target.merge(other));
+        self.each(&|number, target| target.merge(&other.tiles[number]));
         Ok(())
     }
 
     /// Sets the stencil to 0 everywhere.
     pub fn clear_stencil(&mut self) {
-        self.tiles.par_iter_mut().for_each(|target| target.stencil.fill(0));
+        self.each(&|_, target| target.stencil.fill(0));
     }
 
     /// Clears depths and ids. The stencil stays.
     pub fn clear_depth(&mut self) {
-        self.tiles.par_iter_mut().for_each(Target::clear_depth);
+        self.each(&|_, target| target.clear_depth());
+    }
+
+    /// Does a job on each tile, given its number.
+    fn each(&mut self, job: &(dyn Fn(usize, &mut Target) + Sync)) {
+        jobs::for_chunks_mut(&mut self.tiles, 1, |number, own| own.iter_mut().for_each(|target| job(number, target)));
     }
 
     fn pass<L: LayerSource + ?Sized>(
@@ -170,11 +174,11 @@ impl Buffers {
         let meter = Meter::new(&run, self.tiles.len());
         let tiles = &mut self.tiles;
         run.install(|| {
-            tiles.par_iter_mut().enumerate().try_for_each(|(number, target)| {
+            jobs::try_chunks_mut(tiles, 1, |number, own| {
                 meter.check()?;
                 let tile = Tile::number(number as u32, width, height);
                 if layers.touches(&tile) {
-                    pass(target, &tile);
+                    own.iter_mut().for_each(|target| pass(target, &tile));
                 }
                 meter.add(1);
                 Ok::<_, Cancelled>(())

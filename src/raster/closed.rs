@@ -7,6 +7,9 @@ use super::error::RasterError;
 use crate::{Cancelled, Mesh, Run};
 use rvachev_num::jobs;
 
+/// Triangles whose edges a thread lists at once.
+const AT_ONCE: usize = 1 << 12;
+
 /// A mesh whose surface is closed and faces outward, as every join of layers needs it.
 ///
 /// Closed means that every edge is used as often in one direction as in the other, so that a ray
@@ -82,12 +85,13 @@ impl<'a> ClosedMesh<'a> {
 fn uneven_edges(triangles: &[[u32; 3]], run: &Run) -> Result<Vec<u32>, Cancelled> {
     run.check()?;
     // Both ends, lower first, and the direction in the lowest bit.
-    let mut uses: Vec<(u64, bool)> = triangles
-        .par_iter()
-        .flat_map_iter(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-        .filter(|[from, to]| from != to)
-        .map(|[from, to]| (u64::from(from.min(to)) << 32 | u64::from(from.max(to)), from > to))
-        .collect();
+    let of_chunk = |_, triangles: &[[u32; 3]]| {
+        run.check()?;
+        let uses = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).filter(|[from, to]| from != to);
+        let key = |[from, to]: [u32; 2]| (u64::from(from.min(to)) << 32 | u64::from(from.max(to)), from > to);
+        Ok::<Vec<(u64, bool)>, Cancelled>(uses.map(key).collect())
+    };
+    let mut uses = jobs::try_chunks(triangles, AT_ONCE, of_chunk)?.concat();
     run.check()?;
     run.report(0.2);
     uses.par_sort_unstable();

@@ -10,7 +10,6 @@
 //! looking at results: no shadows, one sample a pixel.
 
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 
 use super::buffers::Buffers;
 use super::error::RasterError;
@@ -18,7 +17,7 @@ use super::layers::{Facing, LayerSource, Tile};
 use super::target::{NOTHING, Target};
 use crate::geom::{to_byte, to_linear};
 use crate::{Image, Run};
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 /// Strengths of the lights.
 const KEY: f64 = 0.95;
@@ -114,11 +113,10 @@ impl Buffers {
         let [across, _] = Tile::grid(width, height);
         let mut pixels = vec![[0; 4]; width as usize * height as usize];
         // A row of tiles at a time.
-        let bands = pixels.par_chunks_mut((width * Tile::SIDE) as usize).zip(self.tiles.par_chunks(across as usize));
         let run = run.stage(0.0, 1.0);
         let meter = Meter::new(&run, height);
-        let band = |(band, (pixels, tiles)): (usize, (&mut [[u8; 4]], &[Target]))| {
-            let top = band as u32 * Tile::SIDE;
+        let of_band = |band: usize, pixels: &mut [[u8; 4]]| {
+            let (top, tiles) = (band as u32 * Tile::SIDE, &self.tiles[band * across as usize..][..across as usize]);
             for ((line, pixels), y) in pixels.chunks_mut(width as usize).enumerate().zip(top..) {
                 meter.check()?;
                 for (target, (part, left)) in tiles.iter().zip(pixels.chunks_mut(SIDE).zip((0..).step_by(SIDE))) {
@@ -128,7 +126,7 @@ impl Buffers {
             }
             Ok::<_, RasterError>(())
         };
-        run.install(|| bands.enumerate().try_for_each(band))?;
+        run.install(|| jobs::try_chunks_mut(&mut pixels, (width * Tile::SIDE) as usize, of_band))?;
         Ok(Image::new(width, height, pixels)?)
     }
 

@@ -11,14 +11,14 @@
 //! far as there are any in a tile.
 
 use glam::DVec3;
-use rayon::prelude::*;
+use rvachev_num::jobs;
 
 use super::draft_mesh::DraftMesh;
 use super::gbuffer::{Surface, Window};
 use super::scene::Scene;
 use super::settings::{RenderError, RenderSettings, setting};
 use crate::raster::{Facing, LayerSource, MeshLayers, RasterError, RasterView, Slant, SurfaceId, Target, Tile};
-use crate::{Camera, Mesh};
+use crate::{Camera, Cancelled, Mesh, Run};
 
 /// The near plane, in proportion to the distance from the eye to its target: there is none for
 /// rays.
@@ -62,7 +62,7 @@ impl<'a> Draft<'a> {
     }
 
     /// What the pixels of some rows see through their middles.
-    pub(super) fn surfaces(&self, window: Window) -> Vec<Surface> {
+    pub(super) fn surfaces(&self, window: Window, run: &Run) -> Result<Vec<Surface>, Cancelled> {
         let mut surfaces = vec![Surface::NONE; window.count()];
         let mut bands = Vec::new();
         let (mut rest, mut top, end) = (&mut surfaces[..], window.top, window.top + window.height);
@@ -72,7 +72,8 @@ impl<'a> Draft<'a> {
             bands.push((top, band));
             (rest, top) = (after, next);
         }
-        bands.into_par_iter().for_each_init(Target::new, |target, (top, band)| {
+        jobs::try_taking_with(bands, Target::new, |target, (top, band): (u32, &mut [Surface])| {
+            run.check()?;
             let bottom = top + band.len() as u32 / window.width;
             for tile in row_of_tiles(&self.pixels, top / Tile::SIDE) {
                 let mut last = None;
@@ -83,8 +84,9 @@ impl<'a> Draft<'a> {
                     }
                 });
             }
-        });
-        surfaces
+            Ok(())
+        })?;
+        Ok(surfaces)
     }
 
     /// What the samples of some pixels see, pixel by pixel, row by row in each. `numbers` has the

@@ -18,7 +18,6 @@
 //! for the way through the cells.
 
 use glam::{DVec3, IVec3, Vec3, Vec3A, Vec4};
-use rayon::prelude::*;
 
 use super::empty_space::EmptySpace;
 use super::facet_block::{Block, NODES, Ray, SIDE, Sketch};
@@ -107,9 +106,9 @@ impl Facets {
         });
         let surface: Vec<Block> = made?.into_iter().flatten().collect();
         let blocks = blocks.as_ivec3();
-        let tops = found.par_iter().zip(&surface).map(|(found, block)| {
-            let corner = IVec3::from_array(found.index.map(|i| i as i32 * SIDE as i32)).as_vec3();
-            let (up, height) = block.top();
+        let tops = jobs::in_order(found.len(), |at| {
+            let corner = IVec3::from_array(found[at].index.map(|i| i as i32 * SIDE as i32)).as_vec3();
+            let (up, height) = surface[at].top();
             Top { up: up.into(), height: height + up.dot(corner) }
         });
         let mut numbers = vec![u32::MAX; blocks.element_product() as usize];
@@ -123,7 +122,7 @@ impl Facets {
             cell,
             numbers,
             skips: EmptySpace::new(blocks, &full),
-            tops: tops.collect(),
+            tops,
             surface,
             top: (blocks * SIDE as i32).as_vec3a(),
             last: (blocks - 1).as_vec3a(),

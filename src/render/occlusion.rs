@@ -20,7 +20,6 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3, Vec4};
-use rayon::prelude::*;
 
 use super::facets::Facets;
 use super::scene::Scene;
@@ -293,7 +292,7 @@ impl Rows<'_> {
         let Rows { spots, seen, width, .. } = *self;
         let calm = calm(seen, width);
         let mut means = vec![Visibility::FULL; spots.len()];
-        means.par_chunks_mut(width).enumerate().try_for_each(|(y, row)| {
+        jobs::try_chunks_mut(&mut means, width, |y, row| {
             run.check()?;
             for (x, mean) in row.iter_mut().enumerate() {
                 let own = &spots[y * width + x];
@@ -364,7 +363,8 @@ impl Rows<'_> {
 /// By point, whether nothing is hidden from any of those of its row that the mean reaches.
 fn calm(seen: &[Visibility], width: usize) -> Vec<bool> {
     let mut calm = vec![false; seen.len()];
-    calm.par_chunks_mut(width).zip(seen.par_chunks(width)).for_each(|(calm, seen)| {
+    jobs::for_chunks_mut(&mut calm, width, |row, calm| {
+        let seen = &seen[row * width..][..calm.len()];
         // How many are free up to here; there is nothing to hide beyond the row.
         let mut free = REACH;
         for x in 0..width + REACH {

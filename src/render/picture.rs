@@ -14,7 +14,6 @@
 //! without a match it sends shadow and sky rays of its own.
 
 use glam::Vec4;
-use rayon::prelude::*;
 
 use super::draft::Draft;
 use super::gbuffer::{Surface, Window};
@@ -173,10 +172,11 @@ impl Picture<'_> {
         let light = self.fine_light(&band, &fine, &to_match)?;
         to_match.report(1.0);
         let meter = Meter::new(&to_shade, end - top);
-        (top..end).into_par_iter().zip(pixels.par_chunks_mut(width as usize)).try_for_each(|(y, row)| {
+        jobs::try_chunks_mut(pixels, width as usize, |row, pixels| {
             meter.check()?;
+            let y = top + row as u32;
             let behind = self.behind(f64::from(y) + 0.5);
-            for (x, pixel) in (0..width).zip(row) {
+            for (x, pixel) in (0..width).zip(pixels) {
                 let at = band.place(x, y);
                 let light = match fine.numbers[at] {
                     u32::MAX => self.shade(&band.spots[at], band.open(at), || behind),
@@ -216,7 +216,7 @@ impl Picture<'_> {
         let meter = Meter::new(&to_shade, end - top);
         // Nobody is told of the few rays at edges.
         let unheard = Run { progress: None, ..run.clone() };
-        pixels.par_chunks_mut(rows as usize * columns).enumerate().try_for_each(|(part, pixels)| {
+        jobs::try_chunks_mut(pixels, rows as usize * columns, |part, pixels| {
             meter.check()?;
             let top = top + part as u32 * rows;
             let end = top + (pixels.len() / columns) as u32;
@@ -282,7 +282,7 @@ impl Picture<'_> {
         let columns = width as usize;
         // By pixel, whether it differs from the one to its right, and from the one below.
         let mut steps = vec![[false; 2]; band.spots.len()];
-        steps.par_chunks_mut(columns).enumerate().for_each(|(row, steps)| {
+        jobs::for_chunks_mut(&mut steps, columns, |row, steps| {
             let start = row * columns;
             for (x, step) in steps.iter_mut().enumerate() {
                 let (at, below) = (start + x, start + x + columns);
@@ -424,10 +424,7 @@ impl Picture<'_> {
     /// What the pixels of some rows see through their middles.
     fn surfaces(&self, window: Window, run: &Run) -> Result<Vec<Surface>, Cancelled> {
         match &self.draft {
-            Some(draft) => {
-                run.check()?;
-                Ok(draft.surfaces(window))
-            }
+            Some(draft) => draft.surfaces(window, run),
             None => Ok(self.scene.surfaces_with(&self.rays, window, run)?.into_surfaces()),
         }
     }

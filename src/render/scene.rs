@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 
 use glam::DVec3;
-use rayon::prelude::*;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::cells::Cells;
@@ -18,7 +17,7 @@ use super::tile::{Tracer, View, divide_top};
 use crate::distance::compiled_with;
 use crate::eval::Program;
 use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 /// How far a ray from a hit starts off the surface, in proportion to the solid.
 const RAY_EPSILON: f64 = 1e-7;
@@ -242,8 +241,9 @@ impl Scene {
         let mut found = vec![Surface::NONE; rays.len()];
         if let Some(cells) = &self.cells {
             let meter = Meter::new(run, rays.len());
-            found.par_chunks_mut(PACKET).zip(rays.par_chunks(PACKET)).try_for_each(|(found, rays)| {
+            jobs::try_chunks_mut(&mut found, PACKET, |packet, found| {
                 meter.check()?;
+                let rays = &rays[packet * PACKET..][..found.len()];
                 TRACER.with_borrow_mut(|tracer| tracer.list(cells, rays, found));
                 self.fill_sections(found, |i| rays[i]);
                 meter.add(rays.len() as u64);
@@ -280,14 +280,14 @@ impl Scene {
         }
         let (across, down) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
         let meter = Meter::new(run, across * down);
-        let bands = surfaces.par_chunks_mut((window.width * TILE).max(1) as usize).enumerate();
-        bands.try_for_each(|(band, surfaces)| {
+        jobs::try_chunks_mut(&mut surfaces, (window.width * TILE).max(1) as usize, |band, surfaces| {
             // The rows of each tile.
             let mut tiles: Vec<Vec<&mut [Surface]>> = (0..across).map(|_| Vec::with_capacity(TILE as usize)).collect();
             for row in surfaces.chunks_mut(window.width as usize) {
                 tiles.iter_mut().zip(row.chunks_mut(TILE as usize)).for_each(|(tile, part)| tile.push(part));
             }
-            tiles.into_par_iter().enumerate().try_for_each(|(column, mut rows)| {
+            let tiles = tiles.into_iter().enumerate().collect();
+            jobs::try_taking(tiles, |(column, mut rows): (usize, Vec<&mut [Surface]>)| {
                 meter.check()?;
                 let (x, y) = (column as u32 * TILE, band as u32 * TILE);
                 let (width, height) = (TILE.min(window.width - x), TILE.min(window.height - y));
@@ -298,7 +298,8 @@ impl Scene {
                 }
                 meter.add(1);
                 Ok(())
-            })
+            })?;
+            Ok(())
         })?;
         Ok(GBuffer::new(window, surfaces))
     }

@@ -12,8 +12,7 @@
 //! |f − level|/|∇f|, in pixels; lines keep their width whatever the slope.
 
 use glam::{DVec2, Vec3};
-use rayon::prelude::*;
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 use super::contour::aside;
 use super::settings::{RenderError, check_memory, check_size, setting};
@@ -24,6 +23,9 @@ use crate::{Bounds, Cancelled, Image, Plane, PlaneBounds, Run, Solid};
 
 /// How far the region of a slice goes beyond the solid, in proportion to its size.
 const MARGIN: f64 = 0.08;
+
+/// Values of which the least and the greatest are found at once.
+const AT_ONCE: usize = 1 << 14;
 
 /// A solid cut by a plane: its field on a rectangle of the plane.
 ///
@@ -264,7 +266,7 @@ impl Slice {
         };
         let meter = Meter::new(&to_draw, height);
         let mut pixels = vec![[0; 4]; width * height];
-        pixels.par_chunks_mut(width).enumerate().try_for_each(|(row, pixels)| {
+        jobs::try_chunks_mut(&mut pixels, width, |row, pixels| {
             meter.step()?;
             for (x, pixel) in pixels.iter_mut().enumerate() {
                 *pixel = drawn(row * width + x);
@@ -287,8 +289,13 @@ pub(super) fn seen(bounds: &Bounds, plane: &Plane) -> PlaneBounds {
 
 /// From the least to the greatest value, but no more than what a distance changes by.
 fn span(values: &[f64], size: f64) -> f64 {
-    let low = values.par_iter().copied().reduce(|| f64::INFINITY, f64::min);
-    let high = values.par_iter().copied().reduce(|| f64::NEG_INFINITY, f64::max);
+    let ends = |chunk: usize| {
+        let some = &values[chunk * AT_ONCE..values.len().min((chunk + 1) * AT_ONCE)];
+        some.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
+    };
+    let ends = jobs::in_order(values.len().div_ceil(AT_ONCE), ends);
+    let low = ends.iter().map(|ends| ends[0]).fold(f64::INFINITY, f64::min);
+    let high = ends.iter().map(|ends| ends[1]).fold(f64::NEG_INFINITY, f64::max);
     let span = (high - low).min(2.0 * size);
     if span > 0.0 { span } else { size }
 }

@@ -9,6 +9,7 @@
 //! ```
 
 use glam::DVec3;
+use rvachev_num::jobs;
 
 use super::cells::{Cell, Cells, Part};
 use super::gbuffer::{Surface, Window};
@@ -43,14 +44,14 @@ pub(super) fn divide_top(cells: &Cells, view: &View<'_>, window: &Window) {
             Part::Cell(cell) => cell,
             Part::Halves(halves) => {
                 let [below, above] = &halves.parts;
-                rayon::join(|| divide(below, sees), || divide(above, sees));
+                jobs::both(&mut || divide(below, sees), &mut || divide(above, sees));
                 return;
             }
         };
         let is_plain = cell.bend.is_some() && cell.leaves == 1;
         if cell.share > COARSE && !is_plain && sees(&cell.bounds) {
             let [below, above] = &cell.halves().parts;
-            rayon::join(|| divide(below, sees), || divide(above, sees));
+            jobs::both(&mut || divide(below, sees), &mut || divide(above, sees));
         }
     }
     let sees = |bounds: &Bounds| view.sees(bounds, window);

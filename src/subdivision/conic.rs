@@ -13,6 +13,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec2;
+use rvachev_num::order;
 
 use super::{ControlPolygon, SubdivisionError, Tension, check_coordinates};
 use crate::{Angle, rad, turns};
@@ -176,6 +177,6 @@ pub fn hyperbola_of_ellipse(points: &[DVec2], a: f64) -> Result<Vec<DVec2>, Subd
     check_coordinates(points.iter().map(DVec2::to_array))?;
     let right = points.iter().filter(|p| p.x > 1e-9 * a);
     let mut moved: Vec<DVec2> = right.map(|p| DVec2::new(a * a / p.x, a * p.y / p.x)).collect();
-    moved.sort_by(|p, q| p.y.total_cmp(&q.y));
+    order::rising(&mut moved, |p| p.y);
     Ok(moved)
 }

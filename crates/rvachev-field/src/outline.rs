@@ -21,6 +21,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
+use rvachev_num::order;
+
 use super::tangents::{ANGLE, Arc, Tangents, Turn, power_slope};
 use super::{Gielis, Radius, gielis::Winding, leaf::half};
 use crate::{Dual, Interval, Real};
@@ -239,7 +241,7 @@ impl Outline {
         let mut cuts: Vec<f64> = (0..=8).map(|i| self.span * f64::from(i) / 8.0).collect();
         let zeros = (1..=64).map(|k| f64::from(k) * quarter).take_while(|zero| *zero < self.span);
         cuts.extend(zeros);
-        cuts.sort_by(f64::total_cmp);
+        order::numbers(&mut cuts);
         cuts.windows(2).rev().map(|ends| (ends[0], ends[1])).filter(|(lo, hi)| lo < hi).collect()
     }
 

@@ -23,6 +23,7 @@ pub mod jobs;
 pub mod lanes;
 mod monotone;
 mod norm;
+pub mod order;
 mod real;
 mod run;
 pub mod signs;

@@ -22,7 +22,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use rvachev_num::Meter;
+use rvachev_num::{Meter, order};
 
 use super::neighbours::{Link, Neighbours, link};
 use crate::fit::grid::{Grid, extent};
@@ -66,7 +66,7 @@ pub(super) fn watershed(
     let away = distances(points, &open, is_creased, &measuring)?;
     let mut floods = Floods::new(points.len());
     let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by(|i, j| away[*j].total_cmp(&away[*i]).then(i.cmp(j)));
+    order::falling(&mut order, |i| away[*i]);
     let meter = Meter::new(&flooding, points.len());
     for i in order {
         meter.step()?;

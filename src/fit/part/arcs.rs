@@ -10,6 +10,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec2;
+use rvachev_num::order;
 
 use super::outline::Outline;
 use super::straighten::homes;
@@ -67,7 +68,7 @@ pub(super) fn arched(ring: &[DVec2], polygon: &[DVec2], tolerance: f64, are_exac
         })
         .collect();
     // The longest ones first; what is of one is of no other.
-    found.sort_by_key(|arc| (count - arc.sides, arc.from));
+    order::falling(&mut found, |arc| arc.sides as f64);
     let mut arc_of = vec![None; count];
     let mut corners = polygon.to_vec();
     for (number, arc) in found.iter().enumerate() {
@@ -178,7 +179,7 @@ mod tests {
         let polygon = corners(&ring, 0.0018);
         let outline = arched(&ring, &polygon, 0.0018, true).expect("there are arcs");
         let mut radii: Vec<f64> = outline.radii.iter().copied().filter(|r| *r != 0.0).collect();
-        radii.sort_by(f64::total_cmp);
+        order::numbers(&mut radii);
         assert_eq!(outline.corners.len(), 9, "{outline:?}");
         for (found, true_radius) in radii.iter().zip([-0.05, -0.05, 0.05, 0.1, 0.1]) {
             assert!((found - true_radius).abs() < 1e-9, "{radii:?}");

@@ -6,6 +6,7 @@
 //! others are near.
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::adjust::moments;
 use super::seeds::Seeds;
@@ -106,7 +107,7 @@ fn fullest(votes: &[DVec3]) -> Vec<DVec3> {
         cell.1 += out;
     }
     let mut order: Vec<usize> = (0..cells.len()).filter(|i| cells[*i].0 > 0).collect();
-    order.sort_by_key(|i| (u32::MAX - cells[*i].0, *i));
+    order::falling(&mut order, |i| f64::from(cells[*i].0));
     order.truncate(TRIED);
     order.into_iter().map(|i| cells[i].1.normalize_or(DVec3::Z)).collect()
 }

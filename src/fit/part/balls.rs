@@ -12,6 +12,7 @@
 //! the normal field* (2012).
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::patches::{FEWEST, Patch};
 use super::samples::Samples;
@@ -52,7 +53,7 @@ pub(super) fn patches(samples: &Samples, random: &mut Random) -> Vec<Patch> {
         })
         .filter(|(radius, _)| *radius > LEAST && radius.is_finite())
         .collect();
-    balls.sort_by(|a, b| b.0.total_cmp(&a.0));
+    order::falling(&mut balls, |a| a.0);
     let mut kept: Vec<(f64, DVec3)> = Vec::new();
     for (radius, centre) in balls {
         if kept.len() < MOST && kept.iter().all(|(large, other)| other.distance(centre) > SPACING * large) {

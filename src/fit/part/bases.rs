@@ -11,6 +11,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
+use rvachev_num::order;
 
 use super::arcs::arched;
 use super::outline::Outline;
@@ -222,7 +223,7 @@ fn supershape(points: &[DVec2], centre: DVec2, size: f64) -> Option<Base> {
     let polar: Vec<(f64, f64)> = points.iter().map(|p| ((*p - centre).to_angle(), (*p - centre).length())).collect();
     // Of rings that go round once, and evenly by angle.
     let mut sorted = polar.clone();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order::rising(&mut sorted, |a| a.0);
     let count = sorted.len();
     let width = |i: usize| {
         let d = sorted[(i + 1) % count].0 - sorted[(i + count - 1) % count].0;
@@ -249,7 +250,7 @@ fn supershape(points: &[DVec2], centre: DVec2, size: f64) -> Option<Base> {
     }
     let m = all.iter().rev().find(|a| a.1 >= best - NEARLY)?.0;
     let mut starts = polar.clone();
-    starts.sort_by(|a, b| a.1.total_cmp(&b.1));
+    order::rising(&mut starts, |a| a.1);
     let (least, greatest) = (starts[0], starts[starts.len() - 1]);
     let spread = (greatest.1 / least.1).ln().max(1e-3);
     let mut found: Option<(f64, Base)> = None;

@@ -7,6 +7,7 @@
 //! ```
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::bits::Bits;
 use super::leaf::Leaf;
@@ -162,7 +163,7 @@ impl Side {
                 _ => None,
             })
             .collect();
-        planes.sort_by(f64::total_cmp);
+        order::numbers(&mut planes);
         let nearest = |end: f64| {
             let near = planes.iter().copied().min_by(|a, b| (a - end).abs().total_cmp(&(b - end).abs()));
             near.filter(|plane| (plane - end).abs() < NEAR).unwrap_or(end)
@@ -182,7 +183,7 @@ impl Side {
             highs.extend([own[1] + BEYOND, to + BEYOND]);
         }
         for ends in [&mut lows, &mut highs] {
-            ends.sort_by(f64::total_cmp);
+            order::numbers(ends);
             ends.dedup_by(|a, b| (*a - *b).abs() < 1e-3);
         }
         [lows, highs]

@@ -1,6 +1,7 @@
 //! Directions of a part that are meant to be one, or square to each other.
 
 use glam::{DMat3, DVec3};
+use rvachev_num::order;
 
 use super::samples::Kind;
 
@@ -68,7 +69,7 @@ impl Directions {
     /// Orthogonal frames of the directions with the largest shares.
     pub(super) fn frames(&self) -> Vec<DMat3> {
         let mut left = self.all.clone();
-        left.sort_by(|a, b| b.1.total_cmp(&a.1));
+        order::falling(&mut left, |a| a.1);
         let mut frames: Vec<DMat3> = Vec::new();
         while let (Some(&(first, _)), true) = (left.first(), frames.len() < FRAMES) {
             let across = left.iter().map(|d| d.0).find(|d| d.dot(first).abs() < self.most[2].max(1e-6));

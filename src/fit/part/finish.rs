@@ -21,7 +21,7 @@ use super::sobol::Sobol;
 use super::times::PartTimes;
 use super::words::describe;
 use crate::{Bounds, Run};
-use rvachev_num::jobs;
+use rvachev_num::{jobs, order};
 
 /// Points that the volumes in common are estimated from.
 const POINTS: usize = 1 << 14;
@@ -158,6 +158,6 @@ fn compared(
             }
         }
     }
-    told.sort_by(|a, b| b.share.total_cmp(&a.share));
+    order::falling(&mut told, |a| a.share);
     Ok((iou, told))
 }

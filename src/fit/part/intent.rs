@@ -14,6 +14,7 @@
 //! skin there, or not, by the last digit.
 
 use glam::{DAffine3, DMat3, DVec3};
+use rvachev_num::order;
 
 use super::leaf::Leaf;
 use super::measures::{Measure, tilt};
@@ -193,7 +194,7 @@ struct Loose {
 /// and they lose the digits that mean nothing.
 fn make_equal(numbers: &mut [Vec<f64>], mut loose: Vec<Loose>) {
     let value = |numbers: &[Vec<f64>], l: &Loose| numbers[l.leaf][l.nth];
-    loose.sort_by(|a, b| value(numbers, a).abs().total_cmp(&value(numbers, b).abs()));
+    order::rising(&mut loose, |a| value(numbers, a).abs());
     let mut rest = &loose[..];
     while let Some(first) = rest.first() {
         let least = value(numbers, first).abs();
@@ -228,7 +229,7 @@ fn open(leaf: &Leaf, vertices: &[DVec3], size: f64) -> f64 {
     if off.is_empty() {
         return OPEN * size;
     }
-    off.sort_by(f64::total_cmp);
+    order::numbers(&mut off);
     let spread = 1.5 * off[off.len() / 2];
     OPEN * size + 3.0 * spread / (off.len().min(100) as f64).sqrt()
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2, TAU};
 
 use glam::{DMat3, DVec3};
+use rvachev_num::order;
 
 use super::leaf::{Leaf, Shape};
 use super::patterns::{Layout, Pattern};
@@ -49,12 +50,12 @@ impl Leaf {
     pub(super) fn sorted_sizes(&self) -> Vec<f64> {
         let mut sizes = self.sizes();
         match &self.shape {
-            Shape::Box(_) => sizes.sort_by(f64::total_cmp),
+            Shape::Box(_) => order::numbers(&mut sizes),
             Shape::Profile { outline, height } => {
                 sizes = outline.corners.iter().map(|corner| corner.length()).collect();
-                sizes.sort_by(f64::total_cmp);
+                order::numbers(&mut sizes);
                 let mut radii: Vec<f64> = outline.radii.iter().copied().filter(|radius| *radius != 0.0).collect();
-                radii.sort_by(f64::total_cmp);
+                order::numbers(&mut radii);
                 sizes.extend(radii);
                 sizes.push(*height);
             }
@@ -136,7 +137,8 @@ impl Group<'_> {
             }
         }
         // About z they need not be laid along an axis.
-        rings.sort_by_key(|ring| !matches!(ring.layout, Layout::Ring { axis, .. } if axis == DVec3::Z));
+        let is_about_z = |ring: &Pattern| matches!(ring.layout, Layout::Ring { axis, .. } if axis == DVec3::Z);
+        order::falling(&mut rings, |ring| f64::from(is_about_z(ring)));
         rings
     }
 

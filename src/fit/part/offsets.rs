@@ -1,6 +1,7 @@
 //! Offsets of planes along the axes of frames, between which boxes are looked for.
 
 use glam::{DMat3, DVec3};
+use rvachev_num::order;
 
 use super::boxes::{Grid, MOST};
 use super::queries::Queries;
@@ -62,6 +63,6 @@ fn along(axis: DVec3, regions: &[Region], points: &[DVec3]) -> Vec<f64> {
     keep(low, MOST);
     keep(high, MOST);
     found.iter().filter(|found| found.0 > 0).for_each(|found| keep(found.2, MOST));
-    kept.sort_by(f64::total_cmp);
+    order::numbers(&mut kept);
     kept
 }

@@ -8,6 +8,7 @@
 //! ```
 
 use glam::{DMat3, DVec2, DVec3};
+use rvachev_num::order;
 
 use super::bases::{Base, Grain, apart, bases, polygon};
 use super::bays::bays;
@@ -116,11 +117,11 @@ fn directions(samples: &Samples, regions: &Regions) -> Vec<(DMat3, Vec<f64>)> {
         }
         let heights = || samples.points.iter().map(|p| p.dot(frame.z_axis));
         planes.extend([heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)]);
-        planes.sort_by(f64::total_cmp);
+        order::numbers(&mut planes);
         planes.dedup_by(|a, b| *a - *b < THIN);
         found.push((share, frame, planes));
     }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    order::falling(&mut found, |a| a.0);
     found.truncate(DIRECTIONS);
     found.into_iter().map(|(_, frame, planes)| (frame, planes)).collect()
 }
@@ -134,7 +135,7 @@ fn prismatics(
     run: &Run,
 ) -> Result<Vec<Prismatic>, Cancelled> {
     let mut slabs: Vec<usize> = (0..planes.len().saturating_sub(1)).collect();
-    slabs.sort_by(|i, j| (planes[j + 1] - planes[*j]).total_cmp(&(planes[i + 1] - planes[*i])));
+    order::falling(&mut slabs, |i| planes[i + 1] - planes[*i]);
     slabs.truncate(SLABS);
     slabs.sort_unstable();
     let mut found: Vec<Prismatic> = Vec::new();
@@ -164,7 +165,7 @@ fn ends([first, last]: [usize; 2], planes: &[f64], adds: bool) -> Vec<[f64; 2]> 
     let top = planes.len() - 1;
     let mut pairs: Vec<[usize; 2]> =
         (0..=first).flat_map(|low| (last + 1..=top).map(move |high| [low, high])).collect();
-    pairs.sort_by_key(|[low, high]| (first - low) + (high - last - 1));
+    order::rising(&mut pairs, |[low, high]| ((first - low) + (high - last - 1)) as f64);
     pairs.truncate(PAIRS);
     // Cuts reach through the outermost planes.
     let low = |i: usize| if i == 0 && !adds { planes[0] - BEYOND } else { planes[i] };

@@ -7,6 +7,7 @@
 //! ```
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::bits::{Bits, WORD};
 use super::sobol::Sobol;
@@ -129,7 +130,7 @@ impl Queries {
     /// by points that it has.
     fn push(&mut self, mut asked: Vec<Asked>, weight: f64, words: &mut Vec<u64>) {
         asked.retain(|a| a.sure > 0.0);
-        asked.sort_by(|a, b| b.sure.total_cmp(&a.sure));
+        order::falling(&mut asked, |a| a.sure);
         for some in asked.chunks(WORD) {
             let sure: f64 = some.iter().map(|a| a.sure).sum();
             self.weights.push(weight * sure / WORD as f64);

@@ -9,6 +9,7 @@
 //! detection* (2007).
 
 use glam::{DMat3, DVec3};
+use rvachev_num::order;
 
 use super::detector::Detector;
 use super::samples::Samples;
@@ -83,7 +84,7 @@ impl Region {
     pub(super) fn pieces(&self, samples: &Samples, axis: DVec3, origin: DVec3, gap: f64) -> Vec<[f64; 2]> {
         let mut along: Vec<f64> =
             self.points.iter().map(|i| (samples.points[*i as usize] - origin).dot(axis)).collect();
-        along.sort_by(f64::total_cmp);
+        order::numbers(&mut along);
         along.chunk_by(|a, b| b - a <= gap).map(|piece| [piece[0], piece[piece.len() - 1]]).collect()
     }
 }

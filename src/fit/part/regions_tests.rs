@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec3, Vec3};
+use rvachev_num::order;
 
 use super::regions::{Form, Regions, detect};
 use super::samples::{Kind, Samples};
@@ -190,7 +191,7 @@ fn holes_of_real_parts() {
     let Some(mesh) = part("holder") else { return };
     let (size, regions) = regions_of(&mesh);
     let mut diameters: Vec<f64> = cylinders(size, &regions).iter().map(|c| c.0 / inch).collect();
-    diameters.sort_by(f64::total_cmp);
+    order::numbers(&mut diameters);
     let meant = [-1.0, -1.0, -1.0, -1.0, -0.75, -0.75, -0.75, -0.75, -0.5, 3.0];
     assert_eq!(diameters.len(), meant.len(), "{diameters:?}");
     assert!(diameters.iter().zip(meant).all(|(d, m)| (d / m - 1.0).abs() < 0.002), "{diameters:?}");

@@ -12,6 +12,7 @@
 //! and what the other leaves explain does not hide what is beside it.
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::model::Model;
 use super::offsets::grid;
@@ -66,7 +67,7 @@ pub(super) fn propose(
         wrong.extend(places(set.each().map(|i| (queries.points[i], ())), CELL));
     }
     wrong.retain(|place| place.len() >= FEW);
-    wrong.sort_by_key(|place| usize::MAX - place.len());
+    order::falling(&mut wrong, |place| place.len() as f64);
     selector.grids.truncate(regions.frames.len());
     for place in wrong.into_iter().take(MOST) {
         run.check()?;

@@ -8,6 +8,7 @@
 //! A sample's weight is its share of the area: that of its triangle, over the samples there.
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::corners::{Corner, Facets};
 use super::orient;
@@ -126,7 +127,7 @@ impl Samples {
         }
         if self.kind == Kind::Cad {
             let mut missed: Vec<usize> = (0..hits.len()).filter(|i| hits[*i] == 0 && facets.areas[*i] > 0.0).collect();
-            missed.sort_by(|i, j| facets.areas[*j].total_cmp(&facets.areas[*i]).then(i.cmp(j)));
+            order::falling(&mut missed, |i| facets.areas[*i]);
             missed.truncate(CENTROIDS);
             for i in missed {
                 let [a, b, c] = facets.points(i);

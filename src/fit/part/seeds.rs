@@ -2,6 +2,7 @@
 //! mesh.
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::corners::Corner;
 use super::samples::{Kind, Samples};
@@ -51,7 +52,7 @@ impl Seeds {
     fn new(all: Vec<Seed>, exact: bool) -> Seeds {
         let cells = CELLS.map(|side| Cells::new(&all, side)).into();
         let mut by_part: Vec<u32> = (0..all.len() as u32).collect();
-        by_part.sort_by_key(|i| all[*i as usize].part);
+        order::rising(&mut by_part, |i| f64::from(all[*i as usize].part));
         let mut parts = vec![[0; 2]; all.len()];
         let mut from = 0;
         while from < by_part.len() {

@@ -9,6 +9,8 @@
 //! bored, so pairs are tried with what is wrong counted a little. The order decides: what is added
 //! late closes holes that were cut before, which are then cut again if they pay.
 
+use rvachev_num::order;
+
 use super::bits::{Bits, Stakes, weight};
 use super::boxes::Grid;
 use super::leaf::Leaf;
@@ -124,7 +126,7 @@ impl Selector<'_> {
             if children.is_empty() {
                 break;
             }
-            children.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            order::rising(&mut children, |a| a.cost);
             children.truncate(BEAM);
             if children[0].cost < best.cost - GRAIN {
                 best = children[0].clone();
@@ -221,7 +223,7 @@ impl Selector<'_> {
             .map(|(i, step)| (all.of(judge.bits(*step), weights), i))
             .filter(|(overlap, _)| *overlap > 0.0)
             .collect();
-        cuts.sort_by(|a, b| b.0.total_cmp(&a.0));
+        order::falling(&mut cuts, |a| a.0);
         let mut last = Vec::new();
         for (_, i) in cuts {
             let bits = judge.bits(steps[i]);

@@ -7,9 +7,8 @@
 //!
 //! Each patch gives its best models; whether they are worth their parameters is for the selection.
 
-use std::cmp::Reverse;
-
 use glam::{DMat3, DVec3};
+use rvachev_num::order;
 
 use super::balls;
 use super::leaf::{Leaf, Shape};
@@ -74,7 +73,7 @@ pub(super) fn propose(
     let mut random = Random::new(seed);
     // The largest have the first claim.
     let mut of_surface = patches(samples);
-    of_surface.sort_by_key(|patch| Reverse(patch.samples.len()));
+    order::falling(&mut of_surface, |patch| patch.samples.len() as f64);
     let of_surface = of_surface.into_iter().map(|patch| (patch, true));
     let of_balls = balls::patches(samples, &mut random).into_iter().map(|patch| (patch, false));
     let mut supershapes_left = if kinds.supershapes { SUPERSHAPES } else { 0 };
@@ -166,7 +165,7 @@ impl Scene {
             let model = self.fitted(start, &first, few, Cost::Radial);
             tried.push((self.share(&model, few), model));
         }
-        tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+        order::falling(&mut tried, |a| a.0);
         let mut kept: Vec<(f64, Superquadric)> = Vec::new();
         for (_, model) in tried.into_iter().take(2 * KEPT) {
             let count = self.points.len();
@@ -182,7 +181,7 @@ impl Scene {
                 kept.push((share, model));
             }
         }
-        kept.sort_by(|a, b| b.0.total_cmp(&a.0));
+        order::falling(&mut kept, |a| a.0);
         kept.truncate(KEPT);
         kept
     }

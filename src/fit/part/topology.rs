@@ -7,6 +7,8 @@
 
 use std::collections::HashMap;
 
+use rvachev_num::order;
+
 use super::super::error::FitError;
 use super::leaf::Leaf;
 use super::model::{Model, Step};
@@ -141,7 +143,7 @@ pub(super) fn mended(
             })
             .filter(|next| next.cost < limit)
             .collect();
-        without.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        order::rising(&mut without, |a| a.cost);
         let mut better = None;
         for next in without {
             if tried == TRIED {

@@ -16,8 +16,8 @@
 //! are.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use rvachev_field::{Approach, Patches, Zone};
+use rvachev_num::jobs;
 
 use super::levels::Levels;
 use super::piece::Piece;
@@ -220,7 +220,8 @@ impl<'a> Search<'a> {
             };
             let mut places: Vec<Place> = Vec::with_capacity(blocks.len());
             for some in levels.chunks(&blocks, 16 * AT_ONCE) {
-                places.par_extend(some?.par_iter().with_min_len(AT_ONCE / 16).map(place));
+                let some = some?;
+                places.extend(jobs::in_order(some.len(), |n| place(&some[n])));
             }
             let open = self.sift(&blocks, &places, |block| patches.point(runs.patches(*block).start, [0.0; 2]));
             let patches;
@@ -266,8 +267,8 @@ impl<'a> Search<'a> {
                     let best = nearest.or_else(|| corners.min_by(|a, b| a.0.total_cmp(&b.0)));
                     (own, (place, best))
                 };
-                let (found, told): (Vec<Piece>, Vec<(Place, End)>) =
-                    some.par_iter().with_min_len(AT_ONCE / 16).map(look).unzip();
+                let found = jobs::in_order(some.len(), |n| look(&some[n]));
+                let (found, told): (Vec<Piece>, Vec<(Place, End)>) = found.into_iter().unzip();
                 let (places, ends): (Vec<Place>, Vec<End>) = told.into_iter().unzip();
                 let open = ends.iter().zip(&places).filter(|(_, place)| matches!(place, Place::Open(_)));
                 let ends = open.filter_map(|(end, _)| *end);
@@ -295,11 +296,12 @@ impl<'a> Search<'a> {
             pieces = Vec::with_capacity(4 * next.len());
             for some in next.chunks(16 * AT_ONCE) {
                 run.check()?;
-                pieces.par_extend(some.par_iter().flat_map_iter(|piece| {
+                let divided = |n: usize| {
                     // What is told of some parts by the other's value, or as a triangle, needs no numbers.
-                    let is_asked = !self.is_gentle && !piece.numbers[0].is_nan();
-                    piece.divided(patches, |p| if is_asked { distance(others, p) } else { f64::NAN })
-                }));
+                    let is_asked = !self.is_gentle && !some[n].numbers[0].is_nan();
+                    some[n].divided(patches, |p| if is_asked { distance(others, p) } else { f64::NAN })
+                };
+                pieces.extend(jobs::in_order(some.len(), divided).into_iter().flatten());
             }
         }
         Ok(asked)

@@ -7,7 +7,6 @@
 //! ```
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::levels::Levels;
 use super::overlap::Entry;
@@ -72,8 +71,8 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
         let is_common = |p: DVec3| {
             sides.iter().all(|side| side.program.value(p) > 0.0 && distance(&side.surface.patches, p) > slack)
         };
-        let middles: Vec<DVec3> = open.iter().map(|part| part.bounds.center()).collect();
-        if let Some(found) = middles.into_par_iter().find_first(|p| is_common(*p)) {
+        let middle = |n: usize| Some(open[n].bounds.center()).filter(|p| is_common(*p));
+        if let Some(found) = jobs::first(open.len(), middle) {
             return Ok(Entry::At(found));
         }
         asked += 8 * open.len();
@@ -88,8 +87,8 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
             deep.fold(half, f64::max) + half
         };
         left = small.iter().map(deepest).fold(left, f64::max);
-        open =
-            large.par_iter().flat_map_iter(|part| part.bounds.octants().map(|own| part.part(own))).flatten().collect();
+        let parts = |n: usize| large[n].bounds.octants().map(|own| large[n].part(own));
+        open = jobs::in_order(large.len(), parts).into_iter().flatten().flatten().collect();
         levels.down()?;
     }
     Ok(Entry::AtMost(left))
@@ -171,10 +170,11 @@ pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f
                     large.push((bounds, program, own));
                 }
             }
-            let parts = |(bounds, program, least): &(Bounds, Program, f64)| {
+            let parts = |n: usize| {
+                let (bounds, program, least): &(Bounds, Program, f64) = &large[n];
                 bounds.octants().map(|own| surface(own, program, *least))
             };
-            next[side] = large.par_iter().flat_map_iter(parts).flatten().collect();
+            next[side] = jobs::in_order(large.len(), parts).into_iter().flatten().flatten().collect();
         }
         open = next;
         levels.down()?;

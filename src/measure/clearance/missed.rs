@@ -1,6 +1,7 @@
 //! Solids of whose surface nothing was found: empty ones, and those that are too thin.
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Run};
@@ -45,7 +46,7 @@ pub(super) fn inside(program: &Program, bounds: &Bounds, run: &Run) -> Result<In
             .filter(|(half, own)| own.range(half).hi() > 0.0 && !own.is_contrary())
             .map(|(half, own)| (own.value(half.center()), (half, own)))
             .collect();
-        parts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order::rising(&mut parts, |a| a.0);
         open.extend(parts.into_iter().map(|(_, part)| part));
     }
     Ok(Inside::Nothing)

@@ -19,12 +19,11 @@
 //! Triangles with a repeated index take no part.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::geom::Mesh;
 use crate::mesh::groups::Groups;
 use crate::{Cancelled, Run};
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 /// The sine of the turn of a step, at least, as a part of the product of its sides.
 const TURN: f64 = 1e-8;
@@ -96,34 +95,31 @@ impl Fans {
 
         // Each chunk of vertices owns the steps around them.
         let mut rest = &mut steps[..];
-        let mut jobs = Vec::with_capacity(vertices / CHUNK + 1);
+        let mut chunks = Vec::with_capacity(vertices / CHUNK + 1);
         for (chunk, flat) in flat.chunks_mut(CHUNK).enumerate() {
             let first = chunk * CHUNK;
             let length = (starts[first + flat.len()] - starts[first]) as usize;
             let (own, others) = rest.split_at_mut(length);
             rest = others;
-            jobs.push((first, flat, own));
+            chunks.push((first, flat, own));
         }
-        let meter = Meter::new(&to_look, jobs.len());
-        let tallies: Result<Vec<Tally>, Cancelled> = jobs
-            .into_par_iter()
-            .map(|(first, flat, own)| {
-                meter.step()?;
-                let mut tally = Tally::default();
-                let mut scratch = Vec::new();
-                let offset = starts[first];
-                for (i, flat) in flat.iter_mut().enumerate() {
-                    let [low, high] = [starts[first + i], starts[first + i + 1]].map(|s| (s - offset) as usize);
-                    if low < high {
-                        let vertex = (first + i) as u32;
-                        tally = tally.add(look(vertex, &mut own[low..high], &mut scratch));
-                        *flat = is_flat(mesh, vertex, &own[low..high]);
-                    }
+        let meter = Meter::new(&to_look, chunks.len());
+        let tallies = jobs::try_taking(chunks, |(first, flat, own)| {
+            meter.step()?;
+            let mut tally = Tally::default();
+            let mut scratch = Vec::new();
+            let offset = starts[first];
+            for (i, flat) in flat.iter_mut().enumerate() {
+                let [low, high] = [starts[first + i], starts[first + i + 1]].map(|s| (s - offset) as usize);
+                if low < high {
+                    let vertex = (first + i) as u32;
+                    tally = tally.add(look(vertex, &mut own[low..high], &mut scratch));
+                    *flat = is_flat(mesh, vertex, &own[low..high]);
                 }
-                Ok(tally)
-            })
-            .collect();
-        let tally = tallies?.into_iter().fold(Tally::default(), Tally::add);
+            }
+            Ok::<Tally, Cancelled>(tally)
+        })?;
+        let tally = tallies.into_iter().fold(Tally::default(), Tally::add);
         Ok(Fans {
             used: tally.used,
             edges: tally.edges,

@@ -5,25 +5,29 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::{Cancelled, Run};
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 /// How many buckets there are.
 const BUCKETS: usize = 1 << 12;
 
-/// Items that are looked at, made or moved before it is asked whether to go on.
+/// Items that are looked at or moved before it is asked whether to go on.
 const AT_ONCE: usize = 1 << 16;
 
+/// Items that a thread makes of others before it is asked.
+const SHARE: usize = 1 << 12;
+
 /// What becomes of each of some items, in order.
-pub(super) fn mapped<T: Sync, U: Send>(
+pub(super) fn mapped<T: Sync, U: Clone + Default + Send>(
     items: &[T],
     each: impl Fn(&T) -> U + Sync,
     run: &Run,
 ) -> Result<Vec<U>, Cancelled> {
-    let mut all = Vec::with_capacity(items.len());
-    for items in items.chunks(AT_ONCE) {
+    let mut all = vec![U::default(); items.len()];
+    jobs::try_chunks_mut(&mut all, SHARE, |chunk, own| {
         run.check()?;
-        all.par_extend(items.par_iter().map(&each));
-    }
+        own.iter_mut().zip(&items[chunk * SHARE..]).for_each(|(own, item)| *own = each(item));
+        Ok(())
+    })?;
     Ok(all)
 }
 
@@ -58,7 +62,7 @@ pub(super) fn sorted<T: Copy + Default + Ord + Send>(
     let mut rest = &mut sorted[..];
     let ranges = starts.windows(2).map(|ends| Range { start: ends[0], end: ends[1] });
     let own: Vec<&mut [T]> = ranges.map(|range| rest.split_off_mut(..range.len()).unwrap_or_default()).collect();
-    own.into_par_iter().try_for_each(|own| {
+    jobs::try_taking(own, |own| {
         meter.step()?;
         own.par_sort_unstable();
         Ok(())

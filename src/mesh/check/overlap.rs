@@ -12,7 +12,6 @@
 //! in f64; the rest is decided exactly.
 
 use glam::{DVec3, UVec3, Vec3};
-use rayon::prelude::*;
 
 use super::fans::{Fans, repeats};
 use super::lists::{mapped, sorted};
@@ -102,7 +101,7 @@ fn along_curve(mesh: &Mesh, run: &Run) -> Result<Vec<u32>, Cancelled> {
     };
     let mut keys = vec![0; mesh.triangles().len()];
     let meter = Meter::new(&to_look, keys.len().div_ceil(CHUNK));
-    keys.par_chunks_mut(CHUNK).enumerate().try_for_each(|(chunk, keys)| {
+    jobs::try_chunks_mut(&mut keys, CHUNK, |chunk, keys| {
         meter.step()?;
         let triangles = mesh.triangles().iter().enumerate().skip(chunk * CHUNK);
         keys.iter_mut().zip(triangles).for_each(|(own, triangle)| *own = key(triangle));
@@ -124,7 +123,7 @@ fn spread(x: u32) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Box {
     min: Vec3,
     max: Vec3,

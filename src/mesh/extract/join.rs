@@ -1,7 +1,7 @@
 //! The second pass: the blocks' vertices in one list, and triangles between them, by the case
 //! table or with fans.
 
-use rayon::prelude::*;
+use rvachev_num::jobs;
 
 use super::corners::Vertices;
 use super::lists::keep;
@@ -14,6 +14,9 @@ use crate::mesh::Features;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::BLOCK;
 use crate::{Cancelled, Run};
+
+/// Triangles that a thread numbers anew at once.
+const AT_ONCE: usize = 1 << 12;
 
 impl Parts<'_> {
     /// Counts the blocks that may have lost a feature.
@@ -75,9 +78,8 @@ impl Parts<'_> {
         if !unused.is_empty() {
             let used = used(positions.len(), &unused);
             let number = |n: u32| used[n as usize];
-            triangles.par_iter_mut().for_each(|slot| {
-                let [a, b, c] = *slot;
-                *slot = [number(a), number(b), number(c)];
+            jobs::for_chunks_mut(&mut triangles, AT_ONCE, |_, some| {
+                some.iter_mut().for_each(|slot| *slot = slot.map(number));
             });
             let unused: Vec<usize> = unused.iter().map(|&n| n as usize).collect();
             keep(&mut positions, &unused);

@@ -4,6 +4,7 @@
 //! axes comes in the same order, so one sweep along the list finds it for every block.
 
 use rayon::prelude::*;
+use rvachev_num::jobs;
 
 use super::ExtractError;
 use crate::mesh::signs::BLOCK;
@@ -50,7 +51,7 @@ impl Neighbours {
         if let Some(pair) = sorted.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             return error(cell(pair[0].0), "it is listed twice");
         }
-        let (upper, mut lower): (Vec<_>, Vec<_>) = (1..=STEPS).into_par_iter().map(|bits| sweep(&sorted, bits)).unzip();
+        let (upper, mut lower): (Vec<_>, Vec<_>) = jobs::in_order(STEPS, |n| sweep(&sorted, n + 1)).into_iter().unzip();
         lower.retain(|list| !list.is_empty());
         Ok(Neighbours { sorted, upper, lower })
     }

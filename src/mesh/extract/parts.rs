@@ -1,7 +1,6 @@
 //! All blocks after the first pass, and the triangles of their cells by the case table.
 
 use glam::Vec3;
-use rayon::prelude::*;
 
 use super::block_vertices::{Corners, note_row};
 use super::lists::split;
@@ -12,7 +11,7 @@ use crate::mesh::Features;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::signs::{BLOCK, SIDE, for_each_cell, is_mixed};
 use crate::mesh::table::CaseTable;
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 use crate::{Cancelled, Run};
 
@@ -130,16 +129,15 @@ impl<'a> Parts<'a> {
     /// and every vertex in the list of its owner.
     pub(super) fn check_faces(&self, run: &Run) -> Result<(), ExtractError> {
         let meter = Meter::new(run, self.blocks.len());
-        let blocks = (0..self.blocks.len()).into_par_iter();
-        let mismatches = blocks.try_fold(Vec::new, |mut mismatches, n| {
-            meter.step()?;
-            self.add_mismatches(n, &mut mismatches);
-            Ok(mismatches)
-        });
-        let mismatches = mismatches.try_reduce(Vec::new, |mut all, mut more| {
-            all.append(&mut more);
-            Ok::<_, Cancelled>(all)
-        })?;
+        let of_batch = |batch: usize, blocks: &[_]| {
+            let mut mismatches = Vec::new();
+            for n in (batch * BATCH..).take(blocks.len()) {
+                meter.step()?;
+                self.add_mismatches(n, &mut mismatches);
+            }
+            Ok::<_, Cancelled>(mismatches)
+        };
+        let mismatches = jobs::try_chunks(self.blocks, BATCH, of_batch)?.concat();
         if mismatches.is_empty() { Ok(()) } else { Err(ExtractError::Mismatches(mismatches)) }
     }
 
@@ -175,7 +173,7 @@ impl<'a> Parts<'a> {
 
     /// The triangles of all cells by the case table, in the order of the blocks; nothing if what
     /// watches tells that they will not do.
-    pub(super) fn triangles_unless<W: Watch>(
+    pub(super) fn triangles_unless<W: Watch + Send>(
         &self,
         watch: impl Fn() -> W + Sync + Send,
         run: &Run,
@@ -205,9 +203,8 @@ impl<'a> Parts<'a> {
             let (start, counts) = (triangles.len(), &counts[batches.clone()]);
             triangles.add_zeros(counts.iter().sum());
             let pieces = split(&mut triangles[start..], counts.iter().copied());
-            let pieces = batches.into_par_iter().zip(pieces);
-            match pieces.map_init(worker, of_batch).collect::<Result<(), Stop>>() {
-                Ok(()) => {}
+            match jobs::try_taking_with(batches.zip(pieces).collect(), worker, of_batch) {
+                Ok(_) => {}
                 Err(Stop::Open) => return Ok(None),
                 Err(Stop::Error(error)) => return Err(error),
             }

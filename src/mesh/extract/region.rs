@@ -40,7 +40,7 @@ use crate::mesh::feature::{CLOSE, Candidate, Crease, INSET, Segment, settle};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::qef::Planes;
 use crate::{Cancelled, Run};
-use rvachev_num::Meter;
+use rvachev_num::{Meter, order};
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
 pub(super) const RESIDUAL: f32 = 0.02;
@@ -159,7 +159,7 @@ pub(super) fn regions(
     }
     run.check()?;
     let mut regions: Vec<Region> = known.regions.into_iter().flatten().collect();
-    regions.sort_by_key(|region| region.block);
+    order::rising(&mut regions, |region| region.block as f64);
     Ok(regions)
 }
 
@@ -176,7 +176,7 @@ enum Stage {
 fn axes(along: Vec3A) -> [Option<usize>; 2] {
     let size = along.abs().to_array();
     let mut order = [0, 1, 2];
-    order.sort_by(|&a: &usize, &b: &usize| size[b].total_cmp(&size[a]));
+    order::falling(&mut order, |n| f64::from(size[*n]));
     [Some(order[0]), Some(order[1]).filter(|_| size[order[1]] >= 0.5 * size[order[0]])]
 }
 
@@ -285,7 +285,7 @@ struct Request<'a> {
 /// Requests in the order that they are accepted in: the mesh gains most by the first.
 fn largest_first<'w, 'a>(requests: &'w [Request<'a>]) -> Vec<&'w Request<'a>> {
     let mut order: Vec<&Request<'_>> = requests.iter().collect();
-    order.sort_by(|a, b| b.size.total_cmp(&a.size));
+    order::falling(&mut order, |request| f64::from(request.size));
     order
 }
 

@@ -37,7 +37,6 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use rayon::prelude::*;
 
 use super::cells::{CellOrder, CellSet};
 use super::corners::Vertices;
@@ -56,7 +55,7 @@ use crate::mesh::bulk::Bulk;
 use crate::mesh::feature::{Candidate, Segment};
 use crate::mesh::signs::BLOCK;
 use crate::{Cancelled, Run};
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 /// Fans that a thread looks at before it asks whether to go on.
 pub(super) const AT_ONCE: usize = 512;
@@ -314,7 +313,8 @@ impl Fans {
         let pieces = split(&mut triangles[start..], self.counts.iter().copied());
         let corner_pieces = split(&mut corners, self.counts.iter().copied());
         let meter = Meter::new(run, self.counts.len());
-        pieces.into_par_iter().zip(corner_pieces).enumerate().try_for_each(|(chunk, (piece, corners))| {
+        let pieces = pieces.into_iter().zip(corner_pieces).enumerate().collect();
+        jobs::try_taking(pieces, |(chunk, (piece, corners)): (usize, (&mut [_], &mut [_]))| {
             meter.step()?;
             let mut slots = piece.iter_mut().zip(corners);
             for fan in (chunk * AT_ONCE..self.fans.len()).take(AT_ONCE) {

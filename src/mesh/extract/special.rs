@@ -7,7 +7,6 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3A;
-use rayon::prelude::*;
 
 use super::block_vertices::Corners;
 use super::cells::{CellOrder, CellSet};
@@ -24,7 +23,7 @@ use crate::mesh::feature::{Candidate, Crease, Refiner, Segment, Slope};
 use crate::mesh::loops::{CellLoop, MOST};
 use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
-use rvachev_num::Meter;
+use rvachev_num::{Meter, jobs};
 
 /// Blocks that have their lists together.
 const AT_ONCE: usize = 64;
@@ -137,7 +136,7 @@ impl Special {
         queue.all.plain.make_room((0..even.len()).map(|n| samples.parts.part(n).triangles as usize).sum());
         let queue = Mutex::new(queue);
         let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
-        let of_chunk = |worker: &mut Worker<S>, (chunk, even): (usize, &[bool])| {
+        let of_chunk = |worker: &mut Worker<S>, chunk: usize, even: &[bool]| {
             let mut lists = Lists::with_room(worker.room);
             let begun = lock().begin(chunk);
             let in_turn = begun.is_some();
@@ -157,10 +156,9 @@ impl Special {
             if !in_turn {
                 worker.plain = plain;
             }
-            Ok(())
+            Ok::<(), ExtractError>(())
         };
-        let chunks = even.chunks(AT_ONCE).enumerate().par_bridge();
-        chunks.map_init(|| Worker::new(sampler), of_chunk).collect::<Result<(), ExtractError>>()?;
+        jobs::try_chunks_with(even, AT_ONCE, || Worker::new(sampler), of_chunk)?;
         Ok(queue.into_inner().unwrap_or_else(PoisonError::into_inner).all)
     }
 

@@ -7,6 +7,7 @@
 //! them.
 
 use glam::DVec3;
+use rvachev_num::order;
 
 use super::corners::{corners, lost};
 use super::level::Level;
@@ -168,7 +169,7 @@ fn smaller(
         (b - a).cross(c - a).length()
     };
     let mut order: Vec<usize> = (0..off.len()).collect();
-    order.sort_unstable_by(|a, b| off[*b].total_cmp(&off[*a]).then(a.cmp(b)));
+    order::falling(&mut order, |n| off[*n]);
     let all: f64 = (0..off.len()).map(area).sum();
     // How far the part of the surface that is farthest off is off at least.
     let least = |part: f64| {

@@ -3,7 +3,6 @@
 use std::ops::RangeInclusive;
 
 use glam::Vec3;
-use rayon::prelude::*;
 
 use super::bits::{CellRow, Word, pack};
 use super::{Volume, VolumeError, VolumeSettings};
@@ -64,9 +63,10 @@ impl<'a> Rows<'a> {
         let (words, across) = ((nx + 2).div_ceil(64), ny + 2);
         let mut bits = vec![0; words * across * (nz + 2)];
         let meter = Meter::new(run, nz);
-        let layers = bits[words * across..].par_chunks_mut(words * across).zip(volume.samples.par_chunks(nx * ny));
-        layers.try_for_each(|(bits, samples)| {
+        let layers = &mut bits[words * across..][..words * across * nz];
+        jobs::try_chunks_mut(layers, words * across, |k, bits| {
             meter.step()?;
+            let samples = &volume.samples[k * nx * ny..][..nx * ny];
             for (bits, samples) in bits[words..].chunks_mut(words).zip(samples.chunks(nx)) {
                 pack(samples, settings.level, bits);
             }
@@ -169,7 +169,7 @@ impl<'a> Rows<'a> {
                 triangles: corners.split_off_mut(..count.triangles as usize).unwrap_or_default(),
             });
         }
-        pieces.into_par_iter().enumerate().try_for_each(|(k, piece)| {
+        jobs::try_taking(pieces.into_iter().enumerate().collect(), |(k, piece): (usize, Piece<'_>)| {
             meter.step()?;
             let starts = &starts[k * self.across..];
             self.vertices(k, starts, piece.positions, piece.normals);

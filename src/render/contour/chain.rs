@@ -7,6 +7,7 @@
 use std::collections::{HashMap, HashSet};
 
 use glam::DVec2;
+use rvachev_num::order;
 
 use super::section::{Filling, Section};
 use super::spread::Spread;
@@ -167,7 +168,7 @@ impl Chains<'_> {
             let ends = |leaving: bool| {
                 let ends = met.iter().filter(|(_, leaves)| *leaves == leaving);
                 let mut ends: Vec<Crossing> = ends.map(|(crossing, _)| *crossing).collect();
-                ends.sort_by(|a, b| along(b).total_cmp(&along(a)));
+                order::falling(&mut ends, along);
                 ends
             };
             return ends(true).into_iter().zip(ends(false)).map(|(from, to)| [from, to]).collect();

@@ -16,7 +16,7 @@ mod tree;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DVec2, DVec3};
-use rvachev_num::{Meter, jobs};
+use rvachev_num::{Meter, jobs, order};
 
 use self::chain::Chains;
 pub use self::section::Side;
@@ -127,7 +127,7 @@ impl Solid {
         let near = bounds.inflate(bounds.longest_side());
         let is_near = |height: f64| (near.min.z..=near.max.z).contains(&height);
         let mut order: Vec<usize> = (0..heights.len()).filter(|number| is_near(heights[*number])).collect();
-        order.sort_by(|a, b| heights[*a].total_cmp(&heights[*b]));
+        order::rising(&mut order, |a| heights[*a]);
         let mut contours = vec![Contours::default(); heights.len()];
         let Some(low) = order.first().map(|first| heights[*first]) else {
             run.report(1.0);

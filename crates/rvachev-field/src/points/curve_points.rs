@@ -1,6 +1,7 @@
 //! Evenly spaced points of superellipses.
 
 use glam::DVec2;
+use rvachev_num::order;
 
 use super::wedge::{PlaneSymmetry, reflect_plane};
 use super::{PointError, check_exponent};
@@ -91,7 +92,7 @@ impl Superellipse {
             let angle = p.y.atan2(p.x);
             if angle < 0.0 { angle + std::f64::consts::TAU } else { angle }
         };
-        all.sort_by(|p, q| turn(p).total_cmp(&turn(q)));
+        order::rising(&mut all, turn);
         Ok(all.into_iter().map(|p| p * self.semi_axes()).collect())
     }
 }

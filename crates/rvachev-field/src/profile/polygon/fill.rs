@@ -9,7 +9,7 @@
 use std::collections::HashMap;
 
 use glam::DVec2;
-use rvachev_num::{Cancelled, Run};
+use rvachev_num::{Cancelled, Run, order};
 
 use super::Polygon;
 use super::edge::Edge;
@@ -32,9 +32,9 @@ impl Polygon {
     pub fn triangles(&self, most: usize, run: &Run) -> Result<Option<Vec<[DVec2; 3]>>, Cancelled> {
         let mut edges: Vec<&Edge> = self.border().edges.iter().filter(|edge| edge.start.y != edge.end.y).collect();
         let low = |edge: &Edge| edge.start.y.min(edge.end.y);
-        edges.sort_by(|a, b| low(a).total_cmp(&low(b)));
+        order::rising(&mut edges, |edge| low(edge));
         let mut heights: Vec<f64> = edges.iter().flat_map(|edge| [edge.start.y, edge.end.y]).collect();
-        heights.sort_by(f64::total_cmp);
+        order::numbers(&mut heights);
         heights.dedup();
         let mut rest = edges.into_iter().peekable();
         let (mut here, mut open, mut found): (Vec<&Edge>, Vec<Trapezium<'_>>, _) = (Vec::new(), Vec::new(), Vec::new());
@@ -48,7 +48,7 @@ impl Polygon {
             // Just above, where none of them meet.
             let above = here.iter().map(|edge| edge.start.y.max(edge.end.y)).chain(rest.peek().map(|edge| low(edge)));
             let middle = 0.5 * (from + above.fold(f64::INFINITY, f64::min));
-            here.sort_by(|a, b| across(a, middle).total_cmp(&across(b, middle)));
+            order::rising(&mut here, |a| across(a, middle));
             let mut next: Vec<Trapezium<'_>> =
                 here.chunks_exact(2).map(|sides| Trapezium { sides: [sides[0], sides[1]], from }).collect();
             let places: HashMap<_, _> = next.iter().enumerate().map(|(at, own)| (own.key(), at)).collect();

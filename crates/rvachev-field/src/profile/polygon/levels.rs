@@ -15,7 +15,7 @@
 use std::cmp::Ordering;
 
 use glam::DVec2;
-use rvachev_num::{Cancelled, Run};
+use rvachev_num::{Cancelled, Run, order};
 
 use super::edge::Edge;
 use super::sweep::{order, turn};
@@ -35,7 +35,7 @@ pub(super) struct Levels {
 impl Levels {
     pub(super) fn new(edges: &[Edge], run: &Run) -> Result<Levels, Cancelled> {
         let mut heights: Vec<f64> = edges.iter().map(|edge| edge.start.y).collect();
-        heights.sort_unstable_by(f64::total_cmp);
+        order::numbers(&mut heights);
         heights.dedup();
         run.check()?;
         let size = heights.len().saturating_sub(1).next_power_of_two();
@@ -43,7 +43,7 @@ impl Levels {
         // Nearly in their order, which is then soon made.
         let mut order: Vec<u32> = (0u32..).zip(edges).filter(|(_, e)| e.start.y != e.end.y).map(|(i, _)| i).collect();
         let across = |number: &u32| edges[*number as usize].middle().x;
-        order.sort_unstable_by(|a, b| across(a).total_cmp(&across(b)));
+        order::rising(&mut order, across);
         run.check()?;
         let spans: Vec<[usize; 2]> =
             order.iter().map(|number| edges[*number as usize].rising().map(|end| size + at(end.y))).collect();
