@@ -284,7 +284,7 @@ mod tests {
         assert_eq!(counts, [3, 2]);
         assert!((steps[0].x.abs() - 7.0).abs() < 1e-9 && (steps[1].y.abs() - 9.0).abs() < 1e-9);
         let Layout::Ring { axis, .. } = found[1].layout else { panic!("{found:?}") };
-        assert!(axis == DVec3::Z && found[1].leaves == [0, 3, 1, 4, 2], "{found:?}");
+        assert!(axis == DVec3::Z && found[1].leaves == [4, 2, 0, 3, 1], "{found:?}");
         let Layout::Line { step, .. } = found[2].layout else { panic!("{found:?}") };
         assert!((step.abs() - DVec3::new(5.0, 2.0, 0.0)).length() < 1e-9);
         assert!(found[2].leaves.len() == 4 && !found[2].leaves.contains(&15));
@@ -311,7 +311,7 @@ mod tests {
         let found = found(&leaves, 35.0);
         assert_eq!(found.len(), 2, "{found:?}");
         assert!(matches!(found[0].layout, Layout::Ring { axis, .. } if axis == DVec3::Z), "{found:?}");
-        assert_eq!((&found[0].leaves[..], &found[1].leaves[..]), (&[0, 2, 1, 3][..], &[4, 5][..]));
+        assert_eq!((&found[0].leaves[..], &found[1].leaves[..]), (&[1, 3, 0, 2][..], &[5, 4][..]));
         // Slots that are not turned are a grid, not a ring.
         let slot = |x: f64, y: f64| {
             let corner = DVec3::new(2.0, 1.0, 1.0);
