@@ -33,16 +33,17 @@ fn key(rank: u64, place: u64) -> u128 {
 /// Swaps the items at the places that the keys name into the order of the keys.
 fn arrange(mut keys: Vec<u128>, swap: &mut dyn FnMut(usize, usize)) {
     keys.sort_unstable();
-    let mut from: Vec<usize> = keys.iter().map(|key| *key as u64 as usize).collect();
-    for start in 0..from.len() {
-        // Along the cycle of places that each gets what was at the next.
+    let place = |key: u128| key as u64 as usize;
+    for start in 0..keys.len() {
+        // Along the cycle of places that each get what was at the next; those that have it are
+        // their own next.
         let mut to = start;
-        while from[to] != start {
-            let next = std::mem::replace(&mut from[to], to);
+        while place(keys[to]) != start {
+            let next = place(std::mem::replace(&mut keys[to], to as u128));
             swap(to, next);
             to = next;
         }
-        from[to] = to;
+        keys[to] = to as u128;
     }
 }
 

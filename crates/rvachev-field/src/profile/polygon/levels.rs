@@ -43,7 +43,7 @@ impl Levels {
         // Nearly in their order, which is then soon made.
         let mut order: Vec<u32> = (0u32..).zip(edges).filter(|(_, e)| e.start.y != e.end.y).map(|(i, _)| i).collect();
         let across = |number: &u32| edges[*number as usize].middle().x;
-        order::rising(&mut order, across);
+        order.sort_unstable_by(|a, b| across(a).total_cmp(&across(b)));
         run.check()?;
         let spans: Vec<[usize; 2]> =
             order.iter().map(|number| edges[*number as usize].rising().map(|end| size + at(end.y))).collect();
