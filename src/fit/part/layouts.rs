@@ -27,7 +27,8 @@ pub(super) fn patterns_of(leaves: &[&Leaf], runs: &[usize], size: f64) -> Vec<Pa
     }
     let mut patterns: Vec<(usize, Pattern)> = Vec::new();
     for mut group in groups {
-        // In the order of their places: that in which they were found may hang on the last digits of how well they fit.
+        // In the order of their places: that in which they were found may hang on the last digits
+        // of how well they fit.
         order::rising(&mut group, |i| along(leaves[*i].centre));
         let parameters = leaves[group[0]].parameters();
         let mut group = Group { leaves, left: group, near: PLACED * size };
