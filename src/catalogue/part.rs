@@ -119,7 +119,8 @@ impl Either {
     }
 }
 
-/// A solid or a profile that is a length or a blend: what it is made of is seen when it is first used.
+/// A solid or a profile that is a length or a blend: what it is made of is seen when it is first
+/// used.
 pub(super) struct Toleranced(pub(super) Either);
 
 /// Solids or profiles, any number.

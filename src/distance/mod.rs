@@ -40,7 +40,8 @@ use crate::error::{MeshingError, RenderError};
 use crate::eval::{CompileError, Compiled, Surface, Wanted, compile, compile_and_bound, surface};
 use crate::{Bounds, Run, Solid, SolidError};
 
-/// The programs of a solid, compiled on first use and kept with it; its box is found when asked for.
+/// The programs of a solid, compiled on first use and kept with it; its box is found when asked
+/// for.
 pub(crate) fn compiled(solid: &Solid) -> Result<Arc<Compiled>, SolidError> {
     match compile(solid, &FromMeshes, &Run::default()) {
         Ok(programs) => Ok(programs),

@@ -48,7 +48,8 @@ pub struct Palette {
 fn mixed(program: &Program, below: &[Below], leaves: usize) -> Vec<Option<Program>> {
     let whole = program.root.node();
     let is_blend = |at: usize| matches!(&program.nodes[at].kind, Kind::Join { rule, .. } if *rule != Rule::MinMax);
-    // From the root down: the blend that mixes a node, and whether all ways to it lead through that.
+    // From the root down: the blend that mixes a node, and whether all ways to it lead through
+    // that.
     let mut tops: Vec<Option<usize>> = vec![None; program.nodes.len()];
     let mut is_reached = vec![false; program.nodes.len()];
     let mut of_leaf = vec![None; leaves];

@@ -57,8 +57,8 @@ impl Program {
         sides.all(|side| side == first)
     }
 
-    /// Ranges over a point or a region of numbers of which the least has the sign of a leaf's value,
-    /// given the world's point and those of the frames.
+    /// Ranges over a point or a region of numbers of which the least has the sign of a leaf's
+    /// value, given the world's point and those of the frames.
     pub(super) fn leaf_faces(
         &self,
         leaf: u32,

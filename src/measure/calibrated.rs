@@ -15,11 +15,11 @@
 //!     at least  Σ A (N₂ − N₁)·e       at most  Σ A (w₂ N₂ − w₁ N₁)·e
 //! ```
 //!
-//! over all sides. Sides beside what is all inside or outside are known, of others it is known [what
-//! they have inside](super::section) at least and at most. N may be any unit vector for the lower
-//! bound, as in a calibration (Harvey and Lawson, *Calibrated geometries*, 1982). At creases, where
-//! normals are turned much, each piece of the surface is [looked at by itself](super::section); the
-//! field is 0 there.
+//! over all sides. Sides beside what is all inside or outside are known, of others it is known
+//! [what they have inside](super::section) at least and at most. N may be any unit vector for the
+//! lower bound, as in a calibration (Harvey and Lawson, *Calibrated geometries*, 1982). At creases,
+//! where normals are turned much, each piece of the surface is
+//! [looked at by itself](super::section); the field is 0 there.
 
 use std::collections::{HashMap, HashSet};
 
@@ -39,8 +39,8 @@ const FIRST: f64 = 12.0;
 const MOST: usize = 1 << 14;
 
 /// Cells that nothing is known of are divided so often at most, and no further where of what was
-/// not known, by the areas of their sides, more than this part is not known after it either: what is
-/// not known of then is not told by smaller ones.
+/// not known, by the areas of their sides, more than this part is not known after it either: what
+/// is not known of then is not told by smaller ones.
 const DEEPEST: u8 = 8;
 const VAIN: f64 = 0.9;
 
@@ -147,8 +147,8 @@ struct Sums {
     open: Vec<f64>,
 }
 
-/// Bounds of the area of a program's surface, which is nowhere but in a box, as near to each other as
-/// is asked; nothing if that takes too many cells, as far as the last round tells.
+/// Bounds of the area of a program's surface, which is nowhere but in a box, as near to each other
+/// as is asked; nothing if that takes too many cells, as far as the last round tells.
 pub(super) fn area(
     program: &Program,
     bounds: &Bounds,

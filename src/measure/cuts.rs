@@ -10,8 +10,8 @@
 //!
 //! Of other values the slopes tell a plane. Of meshes, and of what is measured, layers are told
 //! that hold the surface. The planes of all parts of a program divide the cell into bodies that are
-//! inside or outside by what minima and maxima make of the parts; what is open of the parts adds up,
-//! and what is within layers is open where the other parts do not tell it. Faces between such
+//! inside or outside by what minima and maxima make of the parts; what is open of the parts adds
+//! up, and what is within layers is open where the other parts do not tell it. Faces between such
 //! bodies are the surface where one is inside and one outside.
 
 use glam::DVec3;

@@ -21,8 +21,8 @@ const ROUNDING: f64 = 1e-13;
 /// More parts of a program are not looked at.
 const PARTS: usize = 12;
 
-/// Where normals may be turned from a direction by more than this angle's cosine, nothing is made of
-/// it.
+/// Where normals may be turned from a direction by more than this angle's cosine, nothing is made
+/// of it.
 const LEAST: f64 = 0.1;
 
 /// Directions that are close to one.

@@ -135,7 +135,8 @@ impl<'a> Section<'a> {
                 let (sign, layer) = (piece.sign, piece.layer);
                 let is_shown = self.shown.is_some_and(|shown| shown.number == told);
                 if let Some((plane, half)) = layer.filter(|_| sign.is_none() && !is_shown) {
-                    // A point that is off the plane of the one that is shown is as far off this one.
+                    // A point that is off the plane of the one that is shown is as far off this
+                    // one.
                     let off = |shown: Shown| shown.half * shown.plane.normal().dot(plane.normal()).abs();
                     let half = half + self.shown.map_or(0.0, off);
                     let [over, under] = [plane.raised(half), plane.turned().raised(half)];

@@ -86,8 +86,8 @@ impl RasterView {
         MeshLayers::whole(mesh, self, false, Sides::Both)
     }
 
-    /// What is seen of a closed mesh: its front faces, unless the near plane may cut it. They can be
-    /// drawn, and nothing else.
+    /// What is seen of a closed mesh: its front faces, unless the near plane may cut it. They can
+    /// be drawn, and nothing else.
     pub(crate) fn seen<'a>(&self, mesh: &'a Mesh) -> MeshLayers<'a> {
         let is_before = |corner: DVec3| self.clearance(0, self.relative(corner)) > 0.0;
         let is_outside = mesh.bounds().corners().into_iter().all(is_before);
@@ -311,8 +311,8 @@ fn snapped(view: &RasterView, relative: DVec3) -> Corner {
     ((x * one).round() as i32, (y * one).round() as i32, view.key(z))
 }
 
-/// Adds what is left of a triangle, whose corners are relative to the eye, within the bounds of what
-/// can be drawn. Whether the near plane cut it.
+/// Adds what is left of a triangle, whose corners are relative to the eye, within the bounds of
+/// what can be drawn. Whether the near plane cut it.
 fn add_cut(view: &RasterView, relative: [DVec3; 3], face: (u32, Sides), out: &mut Vec<Triangle>) -> bool {
     let is_cut = relative.iter().any(|&q| view.clearance(0, q) <= 0.0);
     let mut polygon = relative.to_vec();

@@ -38,7 +38,8 @@ impl Target {
         SurfaceId { operand: operand & !REVERSED, face: self.face[i], facing }
     }
 
-    /// What is seen at a pixel of the picture, in the tile that it is drawn in, and how deep it lies.
+    /// What is seen at a pixel of the picture, in the tile that it is drawn in, and how deep it
+    /// lies.
     #[inline]
     pub(crate) fn seen(&self, tile: &Tile, [x, y]: [u32; 2]) -> Option<(SurfaceId, f64)> {
         let i = ((y - tile.y) * Tile::SIDE + x - tile.x) as usize;

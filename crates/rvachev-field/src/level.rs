@@ -183,7 +183,8 @@ mod tests {
                             assert!(at <= *high || value(p) > -1e-12, "{number} {n}: {} above", value(p));
                             assert!(at >= *low || value(p) < 1e-12, "{number} {n}: {} below", value(p));
                             let rise = DVec3::from_array(field.dual(Dual::point(p.to_array())).gradient());
-                            // Where the level is near enough, its direction is that of the value's rise there.
+                            // Where the level is near enough, its direction is that of the value's
+                            // rise there.
                             if value(p).abs() < 0.02 * size {
                                 assert!(rise.dot(*normal) > least_cosine - 1e-2, "{number} {n}: {least_cosine}");
                                 turned += usize::from(*least_cosine > 0.9);

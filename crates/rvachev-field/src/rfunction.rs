@@ -443,8 +443,8 @@ fn alpha_and<R: Real>(x: R, y: R, alpha: f64) -> (R, R) {
     (s.min(zero) * (2.0 / (1.0 + alpha)) + product, d)
 }
 
-/// The slope of R_α by x: `(1 − u/D)/(1 + α)` with u = x − αy, which is a small difference where y is small beside x, and
-/// then `y²·(1 − α)/(D·(D + u))`.
+/// The slope of R_α by x: `(1 − u/D)/(1 + α)` with u = x − αy, which is a small difference where y
+/// is small beside x, and then `y²·(1 − α)/(D·(D + u))`.
 #[inline(always)]
 fn alpha_slope<R: Real>(x: R, y: R, d: R, alpha: f64) -> R {
     let tiny = x.lift(TINY);

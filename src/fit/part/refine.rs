@@ -192,8 +192,8 @@ mod tests {
     use super::*;
     use crate::{CellSize, MeshSettings, Solid};
 
-    /// Samples, and vertices where there are such, tell turns of settled axes, whatever the leaf is.
-    /// What is turned by every fit, and about its own axis, stays as it was fitted.
+    /// Samples, and vertices where there are such, tell turns of settled axes, whatever the leaf
+    /// is. What is turned by every fit, and about its own axis, stays as it was fitted.
     #[test]
     fn turns_of_settled_axes_are_told_of_every_kind() {
         let tilt = DMat3::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 0.008);

@@ -297,7 +297,8 @@ impl<'a> Search<'a> {
             for some in next.chunks(16 * AT_ONCE) {
                 run.check()?;
                 let divided = |n: usize| {
-                    // What is told of some parts by the other's value, or as a triangle, needs no numbers.
+                    // What is told of some parts by the other's value, or as a triangle, needs no
+                    // numbers.
                     let is_asked = !self.is_gentle && !some[n].numbers[0].is_nan();
                     some[n].divided(patches, |p| if is_asked { distance(others, p) } else { f64::NAN })
                 };
