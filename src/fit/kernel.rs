@@ -19,7 +19,7 @@
 use std::f64::consts::LN_2;
 use std::ops::Range;
 
-use fearless_simd::{Level, Simd, SimdBase, dispatch};
+use fearless_simd::{Simd, SimdBase};
 use glam::{DMat3, DVec3};
 use rvachev_num::Real;
 use rvachev_num::lanes::{F32, F64, Lanes, Twice};
@@ -207,7 +207,7 @@ pub(super) fn pass<E: Number, M: Model<N>, const N: usize>(
     cost: Cost,
     residuals: &mut [E],
 ) -> Sums<N> {
-    dispatch!(Level::new(), simd => pass_on::<_, E, M, N>(simd, model, samples, Given(weights), cost, residuals))
+    rvachev_num::on_level!(simd => pass_on::<_, E, M, N>(simd, model, samples, Given(weights), cost, residuals))
 }
 
 /// The same with chances for weights, which are kept; 0 for the padding.
@@ -220,7 +220,7 @@ pub(super) fn pass_by_chance<E: Number, M: Model<N>, const N: usize>(
     residuals: &mut [E],
 ) -> Sums<N> {
     let chances = Chances { chance, counts: samples.counts(), kept };
-    dispatch!(Level::new(), simd => pass_on::<_, E, M, N>(simd, model, samples, chances, cost, residuals))
+    rvachev_num::on_level!(simd => pass_on::<_, E, M, N>(simd, model, samples, chances, cost, residuals))
 }
 
 #[inline(always)]
@@ -317,7 +317,7 @@ pub(super) fn residuals<E: Number, M: Model<N>, const N: usize>(
     cost: Cost,
     residuals: &mut [E],
 ) {
-    dispatch!(Level::new(), simd => residuals_on::<_, E, M, N>(simd, model, samples, cost, residuals));
+    rvachev_num::on_level!(simd => residuals_on::<_, E, M, N>(simd, model, samples, cost, residuals));
 }
 
 #[inline(always)]

@@ -5,7 +5,7 @@
 //! once, on SIMD lanes: each candidate of the cells about it sinks into a sorted list of the
 //! nearest, without a branch.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
 use rvachev_num::Real;
 use rvachev_num::lanes::{F32, Lanes};
 
@@ -30,7 +30,7 @@ pub(super) fn lonely(grid: &Grid) -> Vec<bool> {
         along.chain([0.0; WIDTH]).collect::<Vec<f32>>()
     });
     let blocks = grid.blocks();
-    let mut reaches = dispatch!(Level::new(), simd => reaches_on(simd, grid.cell(), &blocks, &columns));
+    let mut reaches = rvachev_num::on_level!(simd => reaches_on(simd, grid.cell(), &blocks, &columns));
     // What is farther away than a cell's side may be outside of the block: the grid is asked.
     let cell = grid.cell() as f32;
     let far: Vec<usize> = (0..order.len()).filter(|i| reaches[*i] > cell).collect();
@@ -41,7 +41,7 @@ pub(super) fn lonely(grid: &Grid) -> Vec<bool> {
         reaches[i] = found.last().map_or(0.0, |last| last.0.sqrt() as f32);
         near.push(found.iter().map(|neighbour| neighbour.1).collect::<Vec<u32>>());
     }
-    let sums = dispatch!(Level::new(), simd => sums_on(simd, &blocks, &columns, &reaches));
+    let sums = rvachev_num::on_level!(simd => sums_on(simd, &blocks, &columns, &reaches));
     let mut by_number = vec![0.0; order.len()];
     let mut lonely = vec![false; order.len()];
     for ((number, reach), sum) in order.iter().zip(&reaches).zip(sums) {

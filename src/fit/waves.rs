@@ -1,7 +1,7 @@
 //! Sums over points of three harmonics of a repetition: of their products with each other, with
 //! other terms, and with values. On SIMD lanes, as there are many repetitions to try.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
 use rvachev_num::Real;
 use rvachev_num::lanes::{F64, Lanes};
 
@@ -31,7 +31,7 @@ pub(super) fn column(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
 /// The sums of columns of terms and values; `turns` has the cosines and sines of the first
 /// harmonic.
 pub(super) fn sums<const N: usize>(terms: &[Vec<f64>; N], values: &[f64], turns: &[Vec<f64>; 2]) -> Sums<N> {
-    dispatch!(Level::new(), simd => sums_on::<_, N>(simd, terms, values, turns))
+    rvachev_num::on_level!(simd => sums_on::<_, N>(simd, terms, values, turns))
 }
 
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! The layers of a mesh in a view: vertices are projected, triangles cut off at the near plane,
 //! and sorted into the tiles that they touch.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
 use glam::DVec3;
 
 use super::buffers::SurfaceId;
@@ -255,11 +255,10 @@ impl LayerSource for MeshLayers<'_> {
     }
 
     fn layers(&self, tile: &Tile, sink: &mut dyn FnMut(&[Fragments])) {
-        let level = Level::new();
         if self.view.parallel {
-            dispatch!(level, simd => self.draw::<_, false>(simd, tile, sink));
+            rvachev_num::on_level!(simd => self.draw::<_, false>(simd, tile, sink));
         } else {
-            dispatch!(level, simd => self.draw::<_, true>(simd, tile, sink));
+            rvachev_num::on_level!(simd => self.draw::<_, true>(simd, tile, sink));
         }
     }
 

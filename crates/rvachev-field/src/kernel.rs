@@ -4,32 +4,18 @@
 //! costs nothing. Each formula is a kernel of its own, with its own loop: fusing several
 //! into one spills registers and is slower.
 
-use fearless_simd::{Level, Simd};
+use fearless_simd::Simd;
 
 use rvachev_num::Real;
 use rvachev_num::lanes::{F32, F64, Lanes, Twice};
 
-/// Calls a function with the token of the machine's SIMD level, or does without. On x86-64 the
-/// levels are AVX2 and AVX-512, and machines that have neither (from before 2013) compute point
-/// by point: every further level costs a compilation of every kernel. So do the unit tests, which
-/// compile the crate a second time; the integration tests run the machine's level. The switches
-/// of `fearless_simd` that leave levels out of a build are honoured.
+/// Calls a function with the token of the machine's SIMD level, or does without: point by point on
+/// machines that have none, and in the unit tests, which compile the crate a second time; the
+/// integration tests run the machine's level.
 macro_rules! on_level {
-    ($simd:ident => $call:expr, else $scalar:expr) => {{
-        #[cfg(not(target_arch = "x86_64"))]
-        if !cfg!(test) {
-            return fearless_simd::dispatch!(Level::new(), $simd => $call);
-        }
-        #[cfg(all(target_arch = "x86_64", not(disable_dispatch_avx512)))]
-        if !cfg!(test) && let Some($simd) = Level::new().as_avx512() {
-            return Simd::vectorize($simd, #[inline(always)] || $call);
-        }
-        #[cfg(all(target_arch = "x86_64", not(disable_dispatch_avx2)))]
-        if !cfg!(test) && let Some($simd) = Level::new().as_avx2() {
-            return Simd::vectorize($simd, #[inline(always)] || $call);
-        }
-        $scalar
-    }};
+    ($simd:ident => $call:expr, else $scalar:expr) => {
+        if cfg!(test) { $scalar } else { rvachev_num::on_level!($simd => $call, else $scalar) }
+    };
 }
 
 pub(crate) use on_level;

@@ -21,6 +21,7 @@ mod interval;
 mod jet;
 pub mod jobs;
 pub mod lanes;
+mod level;
 mod monotone;
 mod norm;
 pub mod order;

@@ -1,7 +1,7 @@
 //! Signs of many numbers at once, as the bits of a word.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch, f32x8};
+use fearless_simd::{Simd, f32x8};
 
 /// Numbers that [`signs`] looks at together.
 pub const STRIP: usize = 8;
@@ -10,7 +10,7 @@ pub const STRIP: usize = 8;
 /// NaN is neither. There must be room behind them for whole strips: what is there gives bits
 /// beyond.
 pub fn signs(numbers: &[f32], count: usize, doubt: f32) -> [u64; 2] {
-    dispatch!(Level::new(), simd => signs_on(simd, numbers, count, doubt))
+    crate::on_level!(simd => signs_on(simd, numbers, count, doubt))
 }
 
 #[inline(always)]

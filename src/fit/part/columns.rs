@@ -10,7 +10,7 @@
 //! A shape and a sample have the same cost, and there are some ten million such pairs in a part:
 //! the loops below are in single precision, without branches, over sixteen samples at a time.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
 use glam::{DMat3, DVec3};
 use rvachev_num::Real;
 use rvachev_num::lanes::{F32, Lanes};
@@ -171,7 +171,7 @@ impl Columns {
     }
 
     fn judged<J: Judge>(&self, judge: &J, tolerance: Tolerance, out: &mut [f32]) -> f64 {
-        dispatch!(Level::new(), simd => self.judged_on::<_, J>(simd, judge, tolerance, out))
+        rvachev_num::on_level!(simd => self.judged_on::<_, J>(simd, judge, tolerance, out))
     }
 
     #[inline(always)]

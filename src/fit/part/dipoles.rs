@@ -13,7 +13,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
 use glam::DVec3;
 use rvachev_num::Real;
 use rvachev_num::lanes::{F32, Lanes};
@@ -85,7 +85,7 @@ impl Dipoles {
 
     /// About 1 inside and 0 outside.
     pub(super) fn winding_number(&self, p: DVec3) -> f64 {
-        self.scale * dispatch!(Level::new(), simd => self.sum(simd, p))
+        self.scale * rvachev_num::on_level!(simd => self.sum(simd, p))
     }
 
     #[inline(always)]

@@ -15,7 +15,7 @@
 
 use std::f64::consts::TAU;
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
 use glam::DVec3;
 use rvachev_num::Real;
 use rvachev_num::lanes::{F32, Lanes};
@@ -112,7 +112,7 @@ fn sums(
 ) -> Result<Vec<DVec3>, Cancelled> {
     let chunk = |at: &[DVec3]| {
         run.check()?;
-        Ok(dispatch!(Level::new(), simd => sums_on(simd, at, sources, moments, what, square)))
+        Ok(rvachev_num::on_level!(simd => sums_on(simd, at, sources, moments, what, square)))
     };
     let chunks: Vec<Vec<DVec3>> = jobs::try_chunks(at, CHUNK, |_, points| chunk(points))?;
     Ok(chunks.concat())

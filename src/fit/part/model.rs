@@ -7,7 +7,7 @@
 //! What a further leaf c at a place of the list gains is linear in c: it changes the samples that
 //! are not in the state before, or are, and that no later leaf decides.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
 
 use super::bits::{Bits, Stakes, differing};
 use super::pool::Pool;
@@ -104,7 +104,7 @@ impl Judge<'_> {
             is_there[self.pool.candidates[step.which as usize].class as usize] = true;
         }
         // Bits are counted by an instruction where there is one.
-        dispatch!(Level::new(), simd => self.ranked(simd, &is_there, stakes, (adds, dear), count))
+        rvachev_num::on_level!(simd => self.ranked(simd, &is_there, stakes, (adds, dear), count))
     }
 
     #[inline(always)]

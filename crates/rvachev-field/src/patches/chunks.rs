@@ -2,7 +2,6 @@
 
 use std::ops;
 
-use fearless_simd::{Level, Simd};
 use rvachev_num::lanes::{F32, F64, Lanes, Twice};
 
 use super::SurfaceDistance;

@@ -52,18 +52,18 @@ pub(super) fn line(n: usize, lo: f64, hi: f64, map: impl Fn(f64) -> f64) -> Vec<
     (0..=n).map(|i| [map(lo + step * i as f64), 0.0, 0.0]).collect()
 }
 
-/// Calls with the token of each SIMD level that kernels run at on this machine, and collects what
-/// comes.
+/// Calls with the token of each SIMD level that kernels run at on this machine, but those that are
+/// left out of the build, and collects what comes.
 macro_rules! on_levels {
     ($simd:ident => $call:expr) => {{
         #[cfg(not(target_arch = "x86_64"))]
         let all = vec![fearless_simd::dispatch!(Level::new(), $simd => $call)];
         #[cfg(target_arch = "x86_64")]
-        let all = {
-            let wide = Level::new().as_avx512().map(|$simd| Simd::vectorize($simd, #[inline(always)] || $call));
-            let plain = Level::new().as_avx2().map(|$simd| Simd::vectorize($simd, #[inline(always)] || $call));
-            [wide, plain].into_iter().flatten().collect::<Vec<_>>()
-        };
+        let mut all = Vec::new();
+        #[cfg(all(target_arch = "x86_64", not(disable_dispatch_avx512)))]
+        all.extend(Level::new().as_avx512().map(|$simd| Simd::vectorize($simd, #[inline(always)] || $call)));
+        #[cfg(all(target_arch = "x86_64", not(disable_dispatch_avx2)))]
+        all.extend(Level::new().as_avx2().map(|$simd| Simd::vectorize($simd, #[inline(always)] || $call)));
         all
     }};
 }

@@ -3,7 +3,6 @@
 use std::fmt;
 use std::sync::Arc;
 
-use fearless_simd::{Level, Simd};
 use glam::{DAffine3, DVec3};
 use rvachev_num::lanes::{F32, F64, Lanes};
 
