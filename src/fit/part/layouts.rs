@@ -41,9 +41,10 @@ pub(super) fn patterns_of(leaves: &[&Leaf], runs: &[usize], size: f64) -> Vec<Pa
     patterns.into_iter().map(|(_, pattern)| pattern).collect()
 }
 
-/// How far along a place is, in a direction across which no two places of a pattern are.
+/// How far along a place is, in a direction across which no two places of a pattern are: steps
+/// along x come first, along z last.
 fn along(place: DVec3) -> f64 {
-    place.dot(DVec3::new(1.0, FRAC_1_SQRT_2, FRAC_1_PI))
+    place.dot(DVec3::new(FRAC_1_PI, FRAC_1_SQRT_2, 1.0))
 }
 
 impl Leaf {
@@ -312,7 +313,7 @@ mod tests {
         let found = found(&leaves, 35.0);
         assert_eq!(found.len(), 2, "{found:?}");
         assert!(matches!(found[0].layout, Layout::Ring { axis, .. } if axis == DVec3::Z), "{found:?}");
-        assert_eq!((&found[0].leaves[..], &found[1].leaves[..]), (&[1, 3, 0, 2][..], &[5, 4][..]));
+        assert_eq!((&found[0].leaves[..], &found[1].leaves[..]), (&[3, 0, 2, 1][..], &[5, 4][..]));
         // Slots that are not turned are a grid, not a ring.
         let slot = |x: f64, y: f64| {
             let corner = DVec3::new(2.0, 1.0, 1.0);
