@@ -99,7 +99,6 @@
 //!     let length = 12.7;
 //!     let cut_cylinder_1_length = 25.4;
 //!     let cut_cylinder_2_length = 38.1;
-//!     let cut_cylinder_5_length = 3.175;
 //!     // block, 101.6 × 63.5 × 57.15; 58.7 % of the surface
 //!     let box_1 = Solid::cuboid([101.6, 63.5, 57.15])
 //!         .translate([0.0, 0.0, offset])
@@ -118,17 +117,17 @@
 //!     let cut_cylinder_2 = Solid::cylinder(6.35, 4.7625)
 //!         .translate(offset_2)
 //!         .named("cut cylinder 2");
-//!     let offset_3 = [cut_cylinder_2_length, cut_cylinder_5_length, -1.5875];
+//!     let offset_3 = [-cut_cylinder_2_length, -offset, -1.5875];
 //!     // hole, ⌀ 6.35, through, 3 × 2 of them in a grid, 38.1 × 25.4 apart; 4.0 % of the surface
-//!     let cut_cylinder_5 = Solid::cylinder(cut_cylinder_5_length, length)
+//!     let cut_cylinder_5 = Solid::cylinder(3.175, length)
 //!         .translate(offset_3)
 //!         .named("cut cylinder 5");
 //!     let cut_cylinder_2s = cut_cylinder_2
 //!         .repeat_linear(3, [cut_cylinder_2_length, 0.0, 0.0])
 //!         .repeat_linear(2, [0.0, cut_cylinder_1_length, 0.0]);
 //!     let cut_cylinder_5s = cut_cylinder_5
-//!         .repeat_linear(3, [-cut_cylinder_2_length, 0.0, 0.0])
-//!         .repeat_linear(2, [0.0, -cut_cylinder_1_length, 0.0]);
+//!         .repeat_linear(3, [cut_cylinder_2_length, 0.0, 0.0])
+//!         .repeat_linear(2, [0.0, cut_cylinder_1_length, 0.0]);
 //!     let parts = [cut_box_1, cut_cylinder_1, cut_cylinder_2s, cut_cylinder_5s];
 //!     box_1.difference_all(parts, RFunction::MIN_MAX)
 //! }
