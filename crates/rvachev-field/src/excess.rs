@@ -67,10 +67,11 @@ impl<const STEEP: bool> ExcessKind for Powers<STEEP> {
     }
 }
 
-/// `(1 + u)^power − 1` by the binomial series, for u of at most [`SMALL`].
+/// `(1 + u)^power − 1` by the binomial series, for u of at most [`SMALL`] and powers from −1 to 1:
+/// what is left out is less than 2⁻⁵⁴ of it.
 #[inline(always)]
 fn binomial<R: Real>(u: R, power: f64) -> R {
-    const TERMS: u32 = 8;
+    const TERMS: u32 = 9;
     let mut series = u.lift(0.0);
     for k in (1..=TERMS).rev() {
         let k = f64::from(k);
@@ -97,6 +98,19 @@ impl ExcessKind for Norm {
             Norm::Sum | Norm::Max => x.lift(1.0) - slope,
             Norm::Euclid => Euclid.rest(x, y, slope),
             Norm::P { p, inv } | Norm::Steep { p, inv } => Powers::<true> { p, inv }.rest(x, y, slope),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_series_keeps_all_digits() {
+        for power in [-0.999, -0.5, 0.3, 0.999] {
+            let exact = f64::exp_m1(power * SMALL.ln_1p());
+            assert!((binomial(SMALL, power) / exact - 1.0).abs() < 1e-15, "{power}");
         }
     }
 }

@@ -486,4 +486,18 @@ mod tests {
             assert!((found / exact - 1.0).abs() < 1e-5, "p {p}: {found:e} for {exact:e}");
         }
     }
+
+    /// The form for small arguments has no bound where they may have any size and sign.
+    #[test]
+    fn ranges_of_slopes_are_those_of_the_form_that_is_narrower() {
+        let around = |place: f64, axis: usize| Dual::variable(Interval::new(place - 1.0, place + 1.0), axis);
+        for norm in [1.5, 2.0, 3.0].map(Norm::new) {
+            let rule = Rule::P(norm);
+            let slope = rule.and(around(0.0, 0), around(0.0, 1)).gradient()[0];
+            assert!(slope.lo() > -1e-9 && slope.hi() < 2.0 + 1e-9, "{norm:?}: {slope:?}");
+            // Beside a far larger one, both forms hold it, and the small one is the narrower.
+            let slope = rule.and(around(1e6, 0), around(0.0, 1)).gradient()[0];
+            assert!(slope.lo() >= -1e-9 && slope.hi() < 1e-8, "{norm:?}: {slope:?}");
+        }
+    }
 }

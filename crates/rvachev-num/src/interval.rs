@@ -381,8 +381,7 @@ impl Real for Interval {
 
     #[inline(always)]
     fn meet(self, o: Interval) -> Interval {
-        let (lo, hi) = (most(self.lo, o.lo), least(self.hi, o.hi));
-        if lo <= hi { Interval { lo, hi } } else { o }
+        Interval { lo: most(self.lo, o.lo), hi: least(self.hi, o.hi) }
     }
 
     #[inline(never)]

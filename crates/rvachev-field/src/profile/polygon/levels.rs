@@ -15,7 +15,7 @@
 use std::cmp::Ordering;
 
 use glam::DVec2;
-use rvachev_num::{Cancelled, Run, order};
+use rvachev_num::{Cancelled, Run};
 
 use super::edge::Edge;
 use super::sweep::{order, turn};
@@ -35,7 +35,7 @@ pub(super) struct Levels {
 impl Levels {
     pub(super) fn new(edges: &[Edge], run: &Run) -> Result<Levels, Cancelled> {
         let mut heights: Vec<f64> = edges.iter().map(|edge| edge.start.y).collect();
-        order::numbers(&mut heights);
+        rvachev_num::order::numbers(&mut heights);
         heights.dedup();
         run.check()?;
         let size = heights.len().saturating_sub(1).next_power_of_two();
