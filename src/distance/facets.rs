@@ -10,6 +10,10 @@ use crate::eval::Program;
 use crate::mesh::{Slopes, Subject};
 use crate::{Bounds, Cancelled, CellSize, Features, Mesh, MeshSettings, Run, ThinFeatures};
 
+/// What a mesh is whole with: the Euler characteristic of eight bodies, or of one with as many
+/// handles and one more.
+const WHOLE: usize = 16;
+
 /// A vertex whose corners have normals that differ by more, in radians, is on a crease.
 pub(super) const CREASE: f64 = 0.05;
 
@@ -83,6 +87,20 @@ impl Facets {
         let mut other = on_face.iter().map(|on_face| !on_face);
         self.normals.retain(|_| other.next().unwrap_or(true));
         Ok(())
+    }
+
+    /// Whether they have holes as a wall has that is thinner than the cells of its mesh, and torn
+    /// for that: their Euler characteristic is that of many bodies, or of many handles.
+    pub(super) fn is_torn(&self) -> bool {
+        let mut vertices: Vec<u32> = self.triangles.iter().flatten().copied().collect();
+        let side = |[a, b]: [u32; 2]| u64::from(a.min(b)) << 32 | u64::from(a.max(b));
+        let of_triangle = |&[a, b, c]: &[u32; 3]| [side([a, b]), side([b, c]), side([c, a])];
+        let mut sides: Vec<u64> = self.triangles.iter().flat_map(of_triangle).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        sides.sort_unstable();
+        sides.dedup();
+        (vertices.len() + self.triangles.len()).abs_diff(sides.len()) > WHOLE
     }
 
     /// The area of all triangles.

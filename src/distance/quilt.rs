@@ -159,7 +159,7 @@ impl Quilt {
         while let Some(plot) = plots.next() {
             let run = run.stage(number as f64 / count as f64, (number + 1) as f64 / count as f64);
             number += 1;
-            patience -= quilt.sew(plot, plots.left(), slopes, care, &run)?;
+            patience = quilt.sew(plot, plots.left(), patience, slopes, care, &run)?;
             if patience < 0.0 {
                 return Ok(None);
             }
@@ -167,12 +167,14 @@ impl Quilt {
         Ok(Some(quilt))
     }
 
-    /// Adds patches of a plot, so many triangles being left. Gives the area that is far off when
-    /// it is seen whether splitting helps.
+    /// Adds patches of a plot, so many triangles being left. When it is seen whether splitting
+    /// helps, the area that is far off is taken from what may be: gives what is left of that, and
+    /// goes no further if it is less than nothing.
     fn sew(
         &mut self,
         plot: Plot,
         left: usize,
+        mut patience: f64,
         slopes: &Slopes<'_>,
         Care { tolerance, depth: last, most, panes: is_merged, .. }: Care,
         run: &Run,
@@ -180,7 +182,7 @@ impl Quilt {
         let mut seams = Seams::default();
         let mut pieces = first(&plot, &mut seams);
         let mut positions = plot.facets.positions;
-        let (mut far_off, mut flat) = (0.0, Vec::<(Piece, f64)>::new());
+        let mut flat = Vec::<(Piece, f64)>::new();
         for depth in 0..=last {
             seams.find(&pieces, &positions, slopes, run)?;
             let patch = |(number, piece): (usize, &Piece)| {
@@ -204,7 +206,10 @@ impl Quilt {
             // What cannot be split any further is no nearer later on.
             if depth == SOON || depth < SOON && is_enough {
                 let off = patches.iter().zip(&errors).filter(|(_, error)| is_off(**error));
-                far_off += off.map(|(own, _)| area_of(own)).sum::<f64>();
+                patience -= off.map(|(own, _)| area_of(own)).sum::<f64>();
+                if patience < 0.0 {
+                    return Ok(patience);
+                }
             }
             let mut next = Vec::new();
             for (number, ((piece, patch), error)) in pieces.into_iter().zip(patches).zip(errors).enumerate() {
@@ -233,7 +238,7 @@ impl Quilt {
             let patch = |corners: [u32; 3]| Patch::flat(corners.map(|v| positions[v as usize]));
             self.patches.extend(pane.triangles.into_iter().map(patch));
         }
-        Ok(far_off)
+        Ok(patience)
     }
 
     /// How many patches there are, spots among them.

@@ -58,7 +58,7 @@ const ATTEMPT: f64 = 0.7;
 /// Cells are halved down to this part where nothing is found, though something may be hidden.
 const NOTHING: f64 = 1.0 / 8.0;
 
-/// So many more cells there may be where something is hidden in them.
+/// So many more cells there may be where something is hidden in them, or walls are torn.
 const HIDDEN: f64 = 12.0;
 
 impl DistanceSource for FromMeshes {
@@ -126,7 +126,9 @@ impl DistanceSource for FromMeshes {
             let count = 0.5 * facets.triangles.len() as f64;
             let mut is_last = 4.0 * count > enough || count == 0.0 && cell < NOTHING * longest;
             let mut care = Care { panes: !wanted.by_patches, ..Care::new(tolerance) };
-            if !is_last && best.is_none() {
+            // Splitting does not sew walls that are torn for they are thinner than cells: smaller cells do.
+            let may_be_torn = || count > 0.0 && 4.0 * count <= HIDDEN * enough && (is_gentle || facets.is_torn());
+            if best.is_none() && (!is_last || may_be_torn()) {
                 care.patience = PATIENCE;
             }
             let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= GROSS * tolerance;

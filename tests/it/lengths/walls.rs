@@ -221,3 +221,30 @@ fn vertices_of_an_offset_lattice_are_roots() {
     println!("{off} of {} vertices, {clamped} clamped", mesh.positions().len());
     assert_eq!((off, clamped), (0, 0), "of {} vertices", mesh.positions().len());
 }
+
+/// Walls that are thinner than the cells in which as large a solid is measured else: what patches
+/// are torn there is told by its holes, and cells are halved until it is whole.
+#[test]
+fn walls_of_a_seventieth_are_measured() -> Result<(), SolidError> {
+    let tube = Solid::cylinder(7.0, 2.5) - Solid::cylinder(6.9, 3.0);
+    let lobes = |size: f64| {
+        let body = Supershape::new(Gielis::new(5.0, 3.0, 6.0, 6.0), Gielis::new(4.0, 10.0, 10.0, 10.0));
+        Solid::from(body.scaled(DVec3::splat(size)))
+    };
+    // Beside a tip, a foot is where the axis meets the surface.
+    let star = lobes(1.0) - lobes(0.94);
+    for (name, solid, by, feet) in [("tube", tube, 0.5, [7.0, 6.9]), ("star", star, 0.05, [1.0, 0.94])] {
+        let moved = solid.offset(by);
+        let accuracy = moved.accuracy()?;
+        println!("{name}: {accuracy:?}");
+        assert!(accuracy.tolerance < 1.1e-3 * by && accuracy.error < 4e-3 * by, "{name}: {accuracy:?}");
+        for (foot, out) in feet.into_iter().zip([1.0, -1.0]) {
+            for gap in [0.2, 0.6] {
+                let p = DVec3::X * (foot + out * gap * by);
+                let off = (moved.value(p)? - (1.0 - gap) * by).abs();
+                assert!(off < 2e-3 * by, "{name} at {p}: off {off}");
+            }
+        }
+    }
+    Ok(())
+}
