@@ -97,6 +97,8 @@ impl DistanceSource for FromMeshes {
         // Of others, tips and cusps hide something in cells of any size.
         let is_gentle = programs.surface.has_gentle_leaves();
         let (mut done, mut best) = (LOOKING, None);
+        // The cells that would have been the last had they not torn something, and whether these are it after all.
+        let (mut torn, mut is_resigned) = (None::<f64>, false);
         let subject = Subject { program: &programs.surface, bounds, palette: None, whole: None };
         let look = run.stage(0.0, done);
         let mut longest = size / ALONG_SIZE;
@@ -126,9 +128,11 @@ impl DistanceSource for FromMeshes {
             let count = 0.5 * facets.triangles.len() as f64;
             let mut is_last = 4.0 * count > enough || count == 0.0 && cell < NOTHING * longest;
             let mut care = Care { panes: !wanted.by_patches, ..Care::new(tolerance) };
-            // Splitting does not sew walls that are torn for they are thinner than cells: smaller cells do.
-            let may_be_torn = || count > 0.0 && 4.0 * count <= HIDDEN * enough && (is_gentle || facets.is_torn());
-            if best.is_none() && (!is_last || may_be_torn()) {
+            // Splitting does not sew walls that are torn for they are thinner than cells: smaller cells may.
+            let most = HIDDEN * enough;
+            let may_be_torn = || count > 0.0 && 4.0 * count <= most && (is_gentle || facets.is_torn());
+            let is_hasty = !is_last || !is_resigned && (torn.is_some() || may_be_torn());
+            if best.is_none() && is_hasty {
                 care.patience = PATIENCE;
             }
             let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= GROSS * tolerance;
@@ -161,6 +165,12 @@ impl DistanceSource for FromMeshes {
                         found.0 = found.1.reached(FEW);
                         best = Some(found);
                     }
+                }
+            } else if is_last {
+                let first = *torn.get_or_insert(cell);
+                if 4.0 * count > most {
+                    // Cusps are torn in cells of any size: of them the larger ones tell as much.
+                    (cell, is_resigned) = (2.0 * first, true);
                 }
             }
             if let Some((reached, mut quilt)) = best.take_if(|_| is_last || is_enough) {

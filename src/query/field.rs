@@ -89,10 +89,12 @@ impl Solid {
     }
 
     /// A box that holds the solid; infinite where the solid is unbounded, empty
-    /// ([`Bounds::EMPTY`]) if it holds nothing.
+    /// ([`Bounds::EMPTY`]) where it is known to hold nothing.
     ///
     /// Leaves under affine maps have their tightest box; joins combine those of their
-    /// operands.
+    /// operands. So what offsets and roundings leave nothing of, and the intersection of operands
+    /// that are apart, have an empty box; what a difference takes away whole still has that of
+    /// its first operand.
     ///
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].

@@ -106,7 +106,18 @@ impl Solid {
         Superellipsoid::new(semi_axes, e1, e2).into()
     }
 
-    /// A [`Supertoroid`] about the z axis.
+    /// A [`Supertoroid`] about the z axis: a tube of these half-widths, whose core is `ring`
+    /// times them from the axis. `ring` is a number and no length: along x the solid reaches to
+    /// `(ring + 1)·semi_axes.x`.
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    ///
+    /// // A ring of radius 20 about a tube that is 3 wide and 4 high.
+    /// let ring = Solid::supertoroid([1.5, 1.5, 2.0], 20.0 / 1.5, 1.0, 1.0);
+    /// assert!((ring.bounds()?.max.x - 21.5).abs() < 1e-9);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn supertoroid(semi_axes: impl Into<DVec3>, ring: f64, e1: f64, e2: f64) -> Solid {
         Supertoroid::new(semi_axes, ring, e1, e2).into()
