@@ -23,7 +23,7 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 
 type Triangle = [DVec3; 3];
 
-/// Margins of [`surely_apart`], relative to powers of the largest coordinate difference M:
+/// Margins of [`lies_beyond`], relative to powers of the largest coordinate difference M:
 /// sums of products of three differences are below 6 M³ and computed to 48 ε M³, those of four
 /// to 132 ε M⁴, with ε = 2⁻⁵³ (first-order analysis). These are more than twice as large.
 const MARGIN_3: f64 = 2e-14;
@@ -35,11 +35,13 @@ pub(super) fn surely_apart(p: &Triangle, q: &Triangle) -> bool {
     lies_beyond(p, q) || lies_beyond(q, p)
 }
 
-/// Whether a plane that belongs to `p` separates it from `q`.
-fn lies_beyond(p: &Triangle, q: &Triangle) -> bool {
+/// Whether a plane that belongs to `p` separates it from the corners `q`: three of a triangle, or
+/// two of one whose third is `p[0]`. The plane then has to pass through that, and all other points
+/// of the triangle are beyond.
+fn lies_beyond<const N: usize>(p: &Triangle, q: &[DVec3; N]) -> bool {
     let (e, f) = (p[1] - p[0], p[2] - p[0]);
     let w = q.map(|x| x - p[0]);
-    let largest = [e, f, w[0], w[1], w[2]].iter().fold(DVec3::ZERO, |m, x| m.max(x.abs())).max_element();
+    let largest = w.iter().fold(e.abs().max(f.abs()), |m, x| m.max(x.abs())).max_element();
     let cubed = largest * largest * largest;
 
     let normal = e.cross(f);
@@ -53,11 +55,11 @@ fn lies_beyond(p: &Triangle, q: &Triangle) -> bool {
         let inward = normal.cross(side);
         range(w.map(|x| inward.dot(x - through))).1 < margin
     };
-    beyond(e, DVec3::ZERO) || beyond(-f, DVec3::ZERO) || beyond(f - e, e)
+    beyond(e, DVec3::ZERO) || beyond(-f, DVec3::ZERO) || N == 3 && beyond(f - e, e)
 }
 
-fn range([a, b, c]: [f64; 3]) -> (f64, f64) {
-    (a.min(b).min(c), a.max(b).max(c))
+fn range<const N: usize>(all: [f64; N]) -> (f64, f64) {
+    all[1..].iter().fold((all[0], all[0]), |(low, high), x| (low.min(*x), high.max(*x)))
 }
 
 /// Whether two triangles without a shared vertex have a common point.
@@ -73,7 +75,9 @@ pub(super) fn meet(p: &Triangle, q: &Triangle) -> bool {
 
 /// Whether [v, p0, p1] and [v, q0, q1] have a common point besides v.
 pub(super) fn meet_beyond_vertex(v: DVec3, p: [DVec3; 2], q: [DVec3; 2]) -> bool {
-    segment_meets(p, &[v, q[0], q[1]]) || segment_meets(q, &[v, p[0], p[1]])
+    let (s, t) = ([v, p[0], p[1]], [v, q[0], q[1]]);
+    let are_apart = lies_beyond(&s, &q) || lies_beyond(&t, &p);
+    !are_apart && (segment_meets(p, &t) || segment_meets(q, &s))
 }
 
 /// Whether [a, b, p] and [a, b, q] have a common point besides those of the side a–b.
@@ -166,4 +170,58 @@ impl Flat {
 
 fn strictly_same(a: f64, b: f64) -> bool {
     (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// Exact signs take a microsecond and more where all is in a plane, and of the triangles of a
+    /// face that is a fan about one of its corners all pairs would ask for them.
+    #[test]
+    fn triangles_of_a_flat_fan_are_apart_without_exact_signs() {
+        let count = 300;
+        let corner = |n: usize| {
+            let angle = TAU * n as f64 / count as f64;
+            // Corners of a mesh are in single precision.
+            DVec3::new(angle.cos(), angle.sin(), 0.3 * angle.cos() + 2.0).as_vec3().as_dvec3()
+        };
+        for first in 1..count - 1 {
+            for other in first + 2..count - 1 {
+                let [p, q] = [first, other].map(|n| [corner(n), corner(n + 1)]);
+                let [s, t] = [p, q].map(|[a, b]| [corner(0), a, b]);
+                assert!(lies_beyond(&s, &q) || lies_beyond(&t, &p), "{first} and {other}");
+            }
+        }
+    }
+
+    /// On a coarse lattice most pairs touch, or lie in a plane.
+    #[test]
+    fn what_is_apart_in_f64_does_not_meet() {
+        let mut state = 1u64;
+        let mut number = |below: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 33) % below) as f64
+        };
+        let mut apart = [0; 2];
+        for round in 0..100_000 {
+            let height = 1 + round % 3;
+            let [v, a, b, c, d, e] = [(); 6].map(|()| DVec3::new(number(5), number(5), number(height)));
+            let (p, q) = ([v, a, b], [v, c, d]);
+            if is_degenerate(p) || is_degenerate(q) {
+                continue;
+            }
+            if lies_beyond(&p, &[c, d]) {
+                apart[0] += 1;
+                assert!(!segment_meets([a, b], &q) && !segment_meets([c, d], &p), "{p:?} {q:?}");
+            }
+            let q = [c, d, e];
+            if !is_degenerate(q) && lies_beyond(&p, &q) {
+                apart[1] += 1;
+                assert!(!meet(&p, &q), "{p:?} {q:?}");
+            }
+        }
+        assert!(apart.iter().all(|count| *count > 5_000), "{apart:?}");
+    }
 }

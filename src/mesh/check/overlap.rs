@@ -8,10 +8,10 @@
 //!
 //! Each group of four triangles descends from the top to the groups whose boxes overlap its
 //! own, at or behind itself. Most of the pairs found that way are neighbours that share a
-//! vertex with a flat fan, and done with; most of the others are settled by a separating plane
-//! in f64; the rest is decided exactly.
+//! vertex with a flat fan, and done with; most of the others, neighbours or not, are settled by a
+//! separating plane in f64; the rest is decided exactly.
 
-use glam::{DVec3, UVec3, Vec3};
+use glam::{UVec3, Vec3};
 
 use super::fans::{Fans, repeats};
 use super::lists::{mapped, sorted};
@@ -230,16 +230,18 @@ impl<'a> Search<'a> {
         self.neighbours_meet(s, t, shared)
     }
 
-    #[cold]
     fn neighbours_meet(&self, s: [u32; 3], t: [u32; 3], shared: [bool; 3]) -> bool {
-        let at = |v: u32| -> DVec3 { self.mesh.positions()[v as usize].as_dvec3() };
-        let rest = |of: [u32; 3], besides: [u32; 3]| of.into_iter().filter(move |v| !besides.contains(v));
-        let own: Vec<DVec3> = rest(s, t).map(at).collect();
-        let other: Vec<DVec3> = rest(t, s).map(at).collect();
-        let common: Vec<DVec3> = (0..3).filter(|&k| shared[k]).map(|k| at(s[k])).collect();
-        match (&common[..], &own[..], &other[..]) {
-            (&[v], &[p0, p1], &[q0, q1]) => meet_beyond_vertex(v, [p0, p1], [q0, q1]),
-            (&[a, b], &[p], &[q]) => meet_beyond_edge(a, b, p, q),
+        let count = shared.iter().filter(|is_shared| **is_shared).count();
+        // From the corner that alone is shared, or alone is not.
+        let corners = |of: [u32; 3], shared: [bool; 3]| {
+            let first = shared.iter().position(|is_shared| *is_shared == (count == 1)).unwrap_or(0);
+            let [a, b, c] = self.mesh.corners(of);
+            [[a, b, c], [b, c, a], [c, a, b]][first]
+        };
+        let (own, other) = (corners(s, shared), corners(t, t.map(|v| s.contains(&v))));
+        match count {
+            1 => meet_beyond_vertex(own[0], [own[1], own[2]], [other[1], other[2]]),
+            2 => meet_beyond_edge(own[1], own[2], own[0], other[0]),
             // The same triangle twice.
             _ => true,
         }
