@@ -10,13 +10,14 @@
 //! Before that come extraction alone, from arrays of 257³ samples; scale: a sphere at 1024³ and
 //! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³; how soon
 //! cancelled runs and reports return; both modes on smooth solids; smooth chains of many
-//! operands beside their hard unions; and how much faster two threads are than one, by the clock.
+//! operands beside their hard unions; meshes within a tolerance; and how much faster two threads
+//! are than one, by the clock.
 //!
 //! Threads are those of a pool that is there before the clock starts, and awake; fidget's as ours.
 //!
-//! Words after `--` choose: `models`, `arrays`, `scale`, `cancel`, `smooth`, `chains`; names of
-//! models, cells along the side (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all
-//! models, also where it takes minutes, `alone` for ours without fidget.
+//! Words after `--` choose: `models`, `arrays`, `scale`, `cancel`, `smooth`, `chains`,
+//! `tolerance`; names of models, cells along the side (64, 128, 256), `one` or `two` threads;
+//! `fidget` for fidget on all models, also where it takes minutes, `alone` for ours without fidget.
 
 #[path = "mesh/cancel.rs"]
 mod cancel;
@@ -36,6 +37,8 @@ mod peer;
 mod scale;
 #[path = "mesh/smooth.rs"]
 mod smooth;
+#[path = "mesh/tolerance.rs"]
+mod tolerance;
 #[path = "mesh/volume.rs"]
 mod volume;
 
@@ -122,7 +125,7 @@ fn main() {
     const NAMES: [&str; 6] = ["M1", "M2", "M3", "M4", "M5", "M6"];
     const CELLS: [&str; 3] = ["64", "128", "256"];
     const THREADS: [&str; 2] = ["one", "two"];
-    const PARTS: [&str; 6] = ["models", "arrays", "scale", "cancel", "smooth", "chains"];
+    const PARTS: [&str; 7] = ["models", "arrays", "scale", "cancel", "smooth", "chains", "tolerance"];
     if chosen.takes("arrays", &PARTS) {
         volume::rows();
     }
@@ -138,6 +141,9 @@ fn main() {
         }
         if chosen.takes("chains", &PARTS) {
             chains::rows(threads);
+        }
+        if chosen.takes("tolerance", &PARTS) {
+            tolerance::rows(threads);
         }
     }
     if chosen.takes("scale", &PARTS) && THREADS.iter().all(|threads| chosen.takes(threads, &THREADS)) {

@@ -77,9 +77,12 @@ impl Corners {
     }
 }
 
-/// The order of the heap: the least cost first, then the vertex; and which state of the vertex it
-/// is of.
-type Entry = Reverse<(u64, u32, u32)>;
+/// The order of the heap: the least cost first, then the vertex. Of costs, which are not negative,
+/// the bits have their order.
+type Entry = Reverse<(u64, u32)>;
+
+/// The cost of a vertex that is not to be drawn.
+const NEVER: u64 = f64::INFINITY.to_bits();
 
 /// A mesh while its vertices are drawn together.
 pub(super) struct Collapse {
@@ -95,8 +98,8 @@ pub(super) struct Collapse {
     /// The points that each triangle stands for.
     points: Vec<Vec<Point>>,
     is_kept: Vec<bool>,
-    /// How often the surroundings of a vertex have changed.
-    versions: Vec<u32>,
+    /// The bits of what drawing a vertex costs at least: of its entries in the heap that one counts.
+    costs: Vec<u64>,
     heap: BinaryHeap<Entry>,
     /// Points with the place of the triangle that is nearest among those that are left: kept, so as
     /// not to be made anew.
@@ -126,7 +129,7 @@ impl Collapse {
         Collapse {
             tolerance,
             is_gone: vec![false; triangles.len()],
-            versions: vec![0; positions.len()],
+            costs: vec![NEVER; positions.len()],
             positions,
             triangles,
             stars,
@@ -149,17 +152,19 @@ impl Collapse {
             self.push(vertex);
         }
         let (mut steps, mut left) = (0, vertices);
-        while let Some(Reverse((_, vertex, version))) = self.heap.pop() {
+        while let Some(Reverse((cost, vertex))) = self.heap.pop() {
             steps += 1;
             if usize::is_multiple_of(steps, AT_ONCE) {
                 run.check()?;
                 run.report(1.0 - left as f64 / vertices as f64);
             }
-            if self.versions[vertex as usize] != version {
+            if self.costs[vertex as usize] != cost {
                 continue;
             }
-            let mut targets = self.targets(vertex);
-            targets.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            self.costs[vertex as usize] = NEVER;
+            let mut targets: Vec<(f64, u32)> = self.targets(vertex).collect();
+            targets.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            targets.dedup();
             let draw = targets.into_iter().take(TARGETS).find_map(|(_, to)| {
                 let draw = self.draw(vertex, to)?;
                 self.part(&draw).then_some(draw)
@@ -172,43 +177,40 @@ impl Collapse {
         Ok(())
     }
 
-    /// Puts a vertex into the heap, by the least that drawing it costs.
+    /// Puts a vertex into the heap, by the least that drawing it costs, if it is not there by that.
     fn push(&mut self, vertex: u32) {
-        let least = self.targets(vertex).into_iter().map(|(cost, _)| cost).fold(f64::INFINITY, f64::min);
-        if least < f64::INFINITY {
-            // Numbers that are not negative have the order of their bits.
-            self.heap.push(Reverse((least.to_bits(), vertex, self.versions[vertex as usize])));
+        let least = self.targets(vertex).map(|(cost, _)| cost).fold(f64::INFINITY, f64::min).to_bits();
+        let before = std::mem::replace(&mut self.costs[vertex as usize], least);
+        if least != before && least != NEVER {
+            self.heap.push(Reverse((least, vertex)));
         }
     }
 
-    /// The vertices that one may be drawn into, each with what that costs.
-    fn targets(&self, vertex: u32) -> Vec<(f64, u32)> {
+    /// The vertices that one may be drawn into, each with what that costs, once or twice.
+    fn targets(&self, vertex: u32) -> impl Iterator<Item = (f64, u32)> {
         let v = vertex as usize;
-        if self.is_kept[v] || self.stars[v].is_empty() {
-            return Vec::new();
-        }
-        let mut others = match self.creases[v].len() {
-            0 => self.around(vertex),
-            2 => self.creases[v].clone(),
+        let (along, is_smooth) = match self.creases[v].len() {
+            _ if self.is_kept[v] => (None, false),
+            0 => (None, true),
+            2 => (Some(&self.creases[v]), false),
             // An end, or a corner.
-            _ => return Vec::new(),
+            _ => (None, false),
         };
-        others.sort_unstable();
-        others.dedup();
+        let around = is_smooth.then(|| self.around(vertex)).into_iter().flatten();
+        let others = along.into_iter().flatten().copied().chain(around);
         let most = (FAR * self.tolerance).powi(2);
-        let cost = |other: u32| {
+        others.filter_map(move |other| {
             let p = self.positions[other as usize];
             let off = self.quadrics[v].mean(p);
             let length = p.distance_squared(self.positions[v]);
             (off < most).then_some((off + LENGTH * self.tolerance * length.sqrt(), other))
-        };
-        others.into_iter().filter_map(cost).collect()
+        })
     }
 
-    /// The vertices next to one.
-    fn around(&self, vertex: u32) -> Vec<u32> {
+    /// The vertices next to one, those within the mesh twice.
+    fn around(&self, vertex: u32) -> impl Iterator<Item = u32> {
         let corners = self.stars[vertex as usize].iter().flat_map(|t| self.triangles[*t as usize].vertices);
-        corners.filter(|other| *other != vertex).collect()
+        corners.filter(move |other| *other != vertex)
     }
 
     /// What drawing a vertex into another makes, if the mesh stays manifold and no triangle turns.
@@ -222,10 +224,10 @@ impl Collapse {
             return None;
         }
         // The two others alone are next to both.
-        let mut beside = self.around(to);
+        let mut beside: Vec<u32> = self.around(to).collect();
         beside.sort_unstable();
-        let both = self.around(from).into_iter().filter(|v| beside.binary_search(v).is_ok());
-        if both.into_iter().any(|v| v != left && v != right) {
+        let mut both = self.around(from).filter(|v| beside.binary_search(v).is_ok());
+        if both.any(|v| v != left && v != right) {
             return None;
         }
         // A crease that goes on beside the one that is drawn would fall onto it.
@@ -335,13 +337,11 @@ impl Collapse {
         }
         let own = self.quadrics[from as usize];
         self.quadrics[to as usize].add(&own);
-        self.versions[from as usize] += 1;
-        let mut changed = self.around(to);
-        changed.push(to);
+        // The others next to `to` have the triangles and the ways that they had.
+        let mut changed: Vec<u32> = kept.iter().flat_map(|(_, triangle)| triangle.vertices).collect();
         changed.sort_unstable();
         changed.dedup();
         for vertex in changed {
-            self.versions[vertex as usize] += 1;
             self.push(vertex);
         }
     }
