@@ -97,7 +97,8 @@ impl DistanceSource for FromMeshes {
         // Of others, tips and cusps hide something in cells of any size.
         let is_gentle = programs.surface.has_gentle_leaves();
         let (mut done, mut best) = (LOOKING, None);
-        // The cells that would have been the last had they not torn something, and whether these are it after all.
+        // The cells that would have been the last had they not torn something, and whether these
+        // are it after all.
         let (mut torn, mut is_resigned) = (None::<f64>, false);
         let subject = Subject { program: &programs.surface, bounds, palette: None, whole: None };
         let look = run.stage(0.0, done);
@@ -128,7 +129,8 @@ impl DistanceSource for FromMeshes {
             let count = 0.5 * facets.triangles.len() as f64;
             let mut is_last = 4.0 * count > enough || count == 0.0 && cell < NOTHING * longest;
             let mut care = Care { panes: !wanted.by_patches, ..Care::new(tolerance) };
-            // Splitting does not sew walls that are torn for they are thinner than cells: smaller cells may.
+            // Splitting does not sew walls that are torn for they are thinner than cells: smaller
+            // cells may.
             let most = HIDDEN * enough;
             let may_be_torn = || count > 0.0 && 4.0 * count <= most && (is_gentle || facets.is_torn());
             let is_hasty = !is_last || !is_resigned && (torn.is_some() || may_be_torn());

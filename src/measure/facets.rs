@@ -17,9 +17,10 @@ use super::moments::Moments;
 use crate::{Bounds, Cancelled, Mesh, Run};
 use rvachev_field::AnyField;
 
-/// How far off a triangle its sides are told: as a part of the root of its area, and in units of what
-/// its corners are rounded by, if that is more. Halved so often where something else is about as
-/// near, as the values on both sides then differ by less than this part of how far they are apart.
+/// How far off a triangle its sides are told: as a part of the root of its area, and in units of
+/// what its corners are rounded by, if that is more. Halved so often where something else is about
+/// as near, as the values on both sides then differ by less than this part of how far they are
+/// apart.
 const ASIDE: f64 = 1e-3;
 const ROUNDINGS: f64 = 4.0;
 const HALVINGS: usize = 30;
@@ -106,8 +107,9 @@ fn area([a, b, c]: &[DVec3; 3]) -> DVec3 {
     0.5 * (*b - *a).cross(*c - *a)
 }
 
-/// Whether inside is right behind a triangle, and outside right in front of it: where the value falls
-/// by as much as distances can, from one side to the other, the triangle is all that is there.
+/// Whether inside is right behind a triangle, and outside right in front of it: where the value
+/// falls by as much as distances can, from one side to the other, the triangle is all that is
+/// there.
 ///
 /// Patches are stored one by one, and a corner is that of one of them: the others may be off it by
 /// twice the rounding. That shifts both values alike, and not what they differ by.

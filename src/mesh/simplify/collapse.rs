@@ -98,7 +98,8 @@ pub(super) struct Collapse {
     /// The points that each triangle stands for.
     points: Vec<Vec<Point>>,
     is_kept: Vec<bool>,
-    /// The bits of what drawing a vertex costs at least: of its entries in the heap that one counts.
+    /// The bits of what drawing a vertex costs at least: of its entries in the heap that one
+    /// counts.
     costs: Vec<u64>,
     heap: BinaryHeap<Entry>,
     /// Points with the place of the triangle that is nearest among those that are left: kept, so as
