@@ -68,7 +68,7 @@ impl Solid {
     ///   milliseconds for convex leaves and what is joined of them; a hundredth takes a second or
     ///   more for supershapes and for what is bent, and seconds to minutes for fillets, and for
     ///   what is measured or read from meshes that overlap or are open: if an estimate does, ask a
-    ///   mesh ([`Mesh::report`](crate::Mesh::report)).
+    ///   mesh ([`Mesh::check`](crate::Mesh::check)).
     /// * Offsets, shells and fillets whose surface is [measured](crate::lengths#exact-or-measured)
     ///   are integrated as they are; how far that is from what was asked for, times the area, comes
     ///   on top: [`accuracy`](Solid::accuracy).
