@@ -217,8 +217,8 @@ impl PartFit {
     /// inside of the mesh where its winding number is above ½.
     ///
     /// Points have a winding number too, but it blurs about as far as they are apart: of a plate
-    /// of 6000 points the right tree is told .96 or .97. Compare trees by it; it is no measure of
-    /// how near one is to the truth.
+    /// of 6000 points the right tree is told .96 or .97. So of points it serves to compare trees.
+    /// It does not tell how near one is to the truth.
     #[must_use]
     pub fn iou(&self) -> f64 {
         self.iou

@@ -222,8 +222,8 @@ fn vertices_of_an_offset_lattice_are_roots() {
     assert_eq!((off, clamped), (0, 0), "of {} vertices", mesh.positions().len());
 }
 
-/// Walls that are thinner than the cells in which as large a solid is measured else: what patches
-/// are torn there is told by its holes, and cells are halved until it is whole.
+/// Walls that are thinner than the cells in which as large a solid is measured else. A mesh that is
+/// torn there is told by its holes, and its cells are halved until it is whole.
 #[test]
 fn walls_of_a_seventieth_are_measured() -> Result<(), SolidError> {
     let tube = Solid::cylinder(7.0, 2.5) - Solid::cylinder(6.9, 3.0);
