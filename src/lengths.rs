@@ -248,12 +248,30 @@
 //! | an intersection | if it is of all operands | no |
 //! | a difference `a - b` | if it is of `a` inside and of `b` outside | no |
 //! | a solid moved, turned, mirrored, scaled evenly | as it is of the solid | as it is of the solid |
-//! | an offset outwards | no | yes |
-//! | an offset inwards | yes | no |
+//! | a profile extruded straight, its edges sharp | if it is of the profile on both sides | the same |
+//! | an offset outwards | if the solid is convex, and it is of it on both sides | yes |
+//! | an offset inwards | yes | of leaves that stay of their kind |
+//! | a rounding | if it is exact, and the solid is convex | if it is exact |
 //!
 //! Offsets inwards and shells ask for the distance inside, offsets outwards for that outside.
 //! R-functions count as min and max here. So `cuboid.shell(1.0)`, the shell of a cube with drilled
 //! holes and the offset outwards of a union of cylinders are exact.
+//!
+//! Of their kind stay, where they are moved in, spheres, boxes, rounded boxes, cylinders, capsules,
+//! tori, prisms, slabs and half-spaces, cones as long as they are truncated, and circles,
+//! rectangles and regular polygons that are extruded straight. Their roundings are exact, and so
+//! are the shells and offsets of these: an enclosure is `cuboid.rounded(4.0).shell(2.0)`. Of what is
+//! convex a filleting is the solid itself.
+//!
+//! ```
+//! use rvachev::{Accuracy, Solid};
+//!
+//! // The sides of a plate, round all over.
+//! let plate = Solid::cuboid([20.0, 20.0, 2.0]).rounded(0.99);
+//! assert_eq!(plate.accuracy()?, Accuracy::default());
+//! assert!((plate.value([10.01, 0.0, 0.01])? + 0.01).abs() < 1e-12);
+//! # Ok::<(), rvachev::SolidError>(())
+//! ```
 //!
 //! Of everything else (superquadrics, what is deformed or blended, a union from inside) the surface
 //! is **measured**: it is meshed once, its cells are halved until their curved patches are on the

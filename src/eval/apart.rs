@@ -60,7 +60,8 @@ pub(super) fn works<'a>(root: &'a Solid, exact: &Exactness, run: &Run) -> Result
         } else if met.insert(solid.address()) && kept(solid).is_none() {
             // What was compiled before has its parts.
             pending.push((solid, true));
-            pending.extend(solid.node().parts().iter().chain(solid.node().ball()).map(|part| (part, false)));
+            let ball = solid.node().ball().filter(|_| !exact.is_certain(solid));
+            pending.extend(solid.node().parts().iter().chain(ball).map(|part| (part, false)));
         }
     }
     works.push(Work::Compile(root));
@@ -71,7 +72,7 @@ pub(super) fn works<'a>(root: &'a Solid, exact: &Exactness, run: &Run) -> Result
 fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> Vec<&'a Solid> {
     match solid.node() {
         Node::Length { length: Length::Level(_), .. } => Vec::new(),
-        Node::Length { .. } if exact.is_gone(solid) => Vec::new(),
+        Node::Length { .. } if exact.is_gone(solid) || exact.is_certain(solid) => Vec::new(),
         Node::Length { operand, length, ball, about, .. } if !exact.is_closed(solid) || length.inwards() > 0.0 => {
             // Where a blend is depends on how large its operands are.
             let blended = about.iter().flat_map(|_| operand.node().operands());

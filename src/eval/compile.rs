@@ -340,7 +340,7 @@ impl<'e> Compiler<'e> {
             let mut built = self.of(operand, inner);
             // What is compiled by itself knows its box better.
             let context = self.contexts.get(inner);
-            if let Some(programs) = kept(operand).filter(|_| is_measured && context.shift.is_none()) {
+            if let Some(programs) = kept(operand).filter(|_| is_measured && context.moved.is_none()) {
                 let known = snug(programs.bounds().transformed(&context.forward));
                 built.sides.inside = built.sides.inside.intersection(&known);
             }
@@ -371,13 +371,15 @@ impl<'e> Compiler<'e> {
             solid::Node::Complement(_) => Ok(below[0].complement()),
             solid::Node::Join { operation, rule, .. } => {
                 let rule = Rule::from(*rule);
-                Ok(match (context.shift, operation) {
+                Ok(match (context.moved, operation) {
                     (_, Operation::SymmetricDifference) => self.code.either(rule, context.frame, &below),
                     (None, _) => self.code.operation(*operation, rule, context.frame, &below),
                     // Its operands are not shifted: it is no min or max.
-                    (Some(shift), _) if rule == Rule::Distance => {
+                    (Some(moved), _) if rule == Rule::Distance => {
                         let joined = self.code.operation(*operation, rule, context.frame, &below);
-                        self.code.level(shift, joined)
+                        let inner = self.contexts.below(site.solid, site.context).first().map(|(_, inner)| *inner);
+                        let done = inner.and_then(|inner| self.contexts.get(inner).moved).unwrap_or_default();
+                        self.code.level(moved.level() + done.depth, joined)
                     }
                     (Some(_), _) => self.code.operation(*operation, Rule::MinMax, context.frame, &below),
                 })
@@ -391,6 +393,9 @@ impl<'e> Compiler<'e> {
                     Length::Level(c) => return Ok(self.code.level(c * context.scale, below[0])),
                     Length::Offset(d) => d,
                     Length::Shell(t) => -t,
+                    Length::Rounded(_) | Length::Filleted(_) if self.exact.is_closed(site.solid) => {
+                        return Ok(below[0]);
+                    }
                     Length::Rounded(radius) => {
                         let fills = self.fills(site, Operation::Intersection, radius);
                         return Ok(self.filled(site, Operation::Intersection, &below, &fills));

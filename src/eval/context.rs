@@ -2,16 +2,15 @@
 //!
 //! A node that is reached twice in one context is compiled once. Where the leaves' values are
 //! the distances that an offset or a shell reads ([`Exact`](super::exact::Exact)), an offset
-//! of min and max is the min and max of offsets: it is carried down to the leaves as a number
-//! that is added to each leaf's value, its sign turned by every complement on the way. What
-//! comes out is a program like any other.
+//! of min and max is the min and max of offsets: it is carried down to the leaves as a [`Move`], its
+//! sign turned by every complement on the way. What comes out is a program like any other.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3};
 
-use super::exact::Exactness;
+use super::exact::{Exactness, erodes};
 use super::scene::{Frame, Scene};
 use crate::solid::{Length, Node, Operation};
 use crate::{RFunction, Solid};
@@ -26,8 +25,40 @@ pub(super) struct Context {
     pub(super) forward: DAffine3,
     /// Product of the smallest stretches.
     pub(super) scale: f64,
-    /// Below a length: what is added to the leaves' values, in the frame's unit.
-    pub(super) shift: Option<f64>,
+    /// Below a length: how the leaves' surfaces are moved, in the frame's unit.
+    pub(super) moved: Option<Move>,
+}
+
+/// The points at least `depth` inside, and then all that are within `shift` of these. Moves add up
+/// to such a one: of a solid of which both are known, what is moved out and then in again is as it
+/// was.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Move {
+    pub(super) depth: f64,
+    pub(super) shift: f64,
+}
+
+impl Move {
+    /// What of a solid that is moved by `by` is to be taken for this to be made of it, in terms of
+    /// the solid.
+    fn of_moved(self, by: f64) -> Move {
+        let Move { depth, shift } = self;
+        if by < 0.0 {
+            Move { depth: depth - by, shift }
+        } else {
+            Move { depth: (depth - by).max(0.0), shift: shift + (by - depth).max(0.0) }
+        }
+    }
+
+    /// That of the complement, where only one of the two is done.
+    fn flipped(self) -> Move {
+        Move { depth: self.shift, shift: self.depth }
+    }
+
+    /// What is added to a value that is a distance on both sides, for the sake of the sign.
+    pub(super) fn level(self) -> f64 {
+        self.shift - self.depth
+    }
 }
 
 #[derive(Default)]
@@ -40,7 +71,7 @@ pub(super) struct Contexts {
 impl Contexts {
     pub(super) fn new() -> Contexts {
         let identity = DAffine3::IDENTITY;
-        let world = Context { frame: 0, to_local: identity, forward: identity, scale: 1.0, shift: None };
+        let world = Context { frame: 0, to_local: identity, forward: identity, scale: 1.0, moved: None };
         Contexts { contexts: vec![world], ..Contexts::default() }
     }
 
@@ -80,8 +111,11 @@ impl Contexts {
             Node::Warp { warp, .. } => vec![(0, self.warped(context, warp, scene))],
             Node::Complement(_) => vec![(0, self.flip_if(context, true))],
             // Its operands' values are read, not their signs alone.
-            Node::Join { rule: RFunction::Distance, operands, .. } if above.shift.is_some() => {
-                let inner = self.push(Context { shift: Some(0.0), ..above });
+            Node::Join { rule: RFunction::Distance, operation, operands } if let Some(moved) = above.moved => {
+                let is_left = *operation == Operation::Intersection
+                    && operands.iter().all(|operand| erodes(operand, moved.depth / above.scale));
+                let depth = if is_left { moved.depth } else { 0.0 };
+                let inner = self.push(Context { moved: Some(Move { depth, shift: 0.0 }), ..above });
                 (0..operands.len()).map(|i| (i, inner)).collect()
             }
             Node::Join { operation, operands, .. } => {
@@ -93,14 +127,18 @@ impl Contexts {
                 (0..operands.len()).map(|i| (i, context)).collect()
             }
             Node::Length { length, .. } => match *length {
+                Length::Rounded(radius) if exact.is_closed(solid) => {
+                    let opened = self.moved(context, radius);
+                    vec![(0, self.moved(opened, -radius))]
+                }
                 Length::Level(_) | Length::Rounded(_) | Length::Filleted(_) => vec![(0, context)],
                 _ if !exact.is_closed(solid) => match length {
                     // The outer side of a wall is the surface itself.
                     Length::Shell(_) => vec![(0, context)],
                     _ => Vec::new(),
                 },
-                Length::Offset(d) => vec![(0, self.shifted(context, d))],
-                Length::Shell(t) => vec![(0, context), (0, self.shifted(context, -t))],
+                Length::Offset(d) => vec![(0, self.moved(context, d))],
+                Length::Shell(t) => vec![(0, context), (0, self.moved(context, -t))],
             },
         };
         self.below.insert((context, solid.address()), list);
@@ -113,20 +151,20 @@ impl Contexts {
         self.push(Context { to_local: identity, forward: identity, frame: scene.frames.len() as u32, ..above })
     }
 
-    /// The context in which values are larger by a length of the node's own coordinates.
-    fn shifted(&mut self, context: u32, by: f64) -> u32 {
+    /// The context in which surfaces are moved out by a length of the node's own coordinates.
+    fn moved(&mut self, context: u32, by: f64) -> u32 {
         let above = *self.get(context);
-        self.push(Context { shift: Some(above.shift.unwrap_or(0.0) + by * above.scale), ..above })
+        self.push(Context { moved: Some(above.moved.unwrap_or_default().of_moved(by * above.scale)), ..above })
     }
 
     /// The context of a complement: its own below a length.
     fn flip_if(&mut self, context: u32, flip: bool) -> u32 {
         let above = *self.get(context);
-        let Some(shift) = above.shift.filter(|_| flip) else { return context };
+        let Some(moved) = above.moved.filter(|_| flip) else { return context };
         if let Some(&flipped) = self.flips.get(&context) {
             return flipped;
         }
-        let flipped = self.push(Context { shift: Some(-shift), ..above });
+        let flipped = self.push(Context { moved: Some(moved.flipped()), ..above });
         self.flips.insert(context, flipped);
         self.flips.insert(flipped, context);
         flipped

@@ -54,7 +54,7 @@ pub enum FitError {
     },
     /// The cloud is too small, too large or too far away for lengths of solids.
     #[error(
-        "the cloud is {value} {property}; allowed: {allowed}; scale or move it first, or leave out points far from the rest"
+        "the cloud is {value:?} {property}; allowed: {allowed}; scale or move it first, or leave out points far from the rest"
     )]
     Extent {
         /// What is told of the cloud.

@@ -105,7 +105,8 @@ impl Solid {
     /// |---|---|---|
     /// | `radius` | length | 10⁻⁹ to 10⁹ |
     ///
-    /// Faces that the ball touches stay the solid's own, exactly. Accuracy: that of
+    /// Faces that the ball touches stay the solid's own, exactly. Of boxes, cylinders, prisms and
+    /// [others](crate::lengths#exact-or-measured) it is exact. Accuracy of all else: that of
     /// [`offset`](Solid::offset).
     ///
     /// ```
@@ -131,8 +132,8 @@ impl Solid {
     /// |---|---|---|
     /// | `radius` | length | 10⁻⁹ to 10⁹ |
     ///
-    /// Faces that the ball touches stay the solid's own, exactly. Accuracy: that of
-    /// [`offset`](Solid::offset).
+    /// Faces that the ball touches stay the solid's own, exactly; of a convex solid all do. Accuracy
+    /// of all else: that of [`offset`](Solid::offset).
     ///
     /// ```
     /// use rvachev::Profile;

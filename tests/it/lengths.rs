@@ -3,6 +3,7 @@
 //! Lengths are millimetres. Volumes are those of meshes; what they may be off follows from the
 //! tolerance of lengths ([`layer`]) and from the cells ([`sag`]).
 
+mod closed;
 mod fillets;
 mod laws;
 mod nested;

@@ -72,6 +72,11 @@ impl Field for Capsule {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Capsule> {
+        let left = Capsule { radius: self.radius - depth, height: self.height - 2.0 * depth };
+        left.check().is_ok().then_some(left)
+    }
+
     fn least_radius(&self) -> f64 {
         self.radius
     }

@@ -85,6 +85,18 @@ impl Field for Cone {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Cone> {
+        // Of a pointed one what is left is not in the middle of its height.
+        let narrowing = self.bottom_radius - self.top_radius;
+        let (slant, part) = (narrowing.hypot(self.height), depth / self.height);
+        let left = Cone {
+            bottom_radius: self.bottom_radius - part * (slant + narrowing),
+            top_radius: self.top_radius - part * (slant - narrowing),
+            height: self.height - 2.0 * depth,
+        };
+        left.check().is_ok().then_some(left)
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         lipschitz_range(self, region)
     }

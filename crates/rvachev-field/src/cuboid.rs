@@ -69,6 +69,11 @@ impl Field for Cuboid {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Cuboid> {
+        let left = Cuboid { size: self.size - 2.0 * depth };
+        left.check().is_ok().then_some(left)
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, region)
     }

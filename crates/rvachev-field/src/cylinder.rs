@@ -73,6 +73,11 @@ impl Field for Cylinder {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Cylinder> {
+        let left = Cylinder { radius: self.radius - depth, height: self.height - 2.0 * depth };
+        left.check().is_ok().then_some(left)
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, region)
     }

@@ -115,6 +115,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// Whether the value is the true distance.
     fn exact(&self) -> bool;
+    /// The points that are at least `depth` inside, as an exact leaf, where that is known.
+    fn eroded(&self, _depth: f64) -> Option<Arc<dyn AnyField>> {
+        None
+    }
     /// No radius of curvature of the surface is less.
     fn least_radius(&self) -> f64 {
         0.0
@@ -315,6 +319,10 @@ impl<F: Field> AnyField for F {
 
     fn exact(&self) -> bool {
         Field::exact(self)
+    }
+
+    fn eroded(&self, depth: f64) -> Option<Arc<dyn AnyField>> {
+        Field::eroded(self, depth).map(|leaf| Arc::new(leaf) as Arc<dyn AnyField>)
     }
 
     fn axes(&self) -> [bool; 3] {

@@ -79,6 +79,11 @@ impl Field for HalfSpace {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<HalfSpace> {
+        let left = HalfSpace { offset: self.offset - depth, ..*self };
+        left.check().is_ok().then_some(left)
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         self.over(region)
     }

@@ -111,6 +111,15 @@ impl Field for Prism {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Prism> {
+        let left = Prism::new(
+            self.sides(),
+            self.radius() * (1.0 - depth / self.inscribed_radius()),
+            self.height - 2.0 * depth,
+        );
+        left.check().is_ok().then_some(left)
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         lipschitz_range(self, region)
     }

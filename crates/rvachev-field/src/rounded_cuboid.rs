@@ -62,6 +62,11 @@ impl Field for RoundedCuboid {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<RoundedCuboid> {
+        let left = RoundedCuboid { size: self.size - 2.0 * depth, radius: (self.radius - depth).max(0.0) };
+        left.check().is_ok().then_some(left)
+    }
+
     fn least_radius(&self) -> f64 {
         self.radius
     }

@@ -78,6 +78,11 @@ impl Field for Slab {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Slab> {
+        let left = Slab { thickness: self.thickness - 2.0 * depth, ..*self };
+        left.check().is_ok().then_some(left)
+    }
+
     fn support(&self, d: DVec3) -> f64 {
         // Bounded along the normal only, up to rounding of the direction.
         let n = self.unit();

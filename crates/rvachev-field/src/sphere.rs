@@ -53,6 +53,11 @@ impl Field for Sphere {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Sphere> {
+        let left = Sphere { radius: self.radius - depth };
+        left.check().is_ok().then_some(left)
+    }
+
     fn least_radius(&self) -> f64 {
         self.radius
     }

@@ -64,6 +64,11 @@ impl Field for Torus {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Torus> {
+        let left = Torus { tube: self.tube - depth, ..*self };
+        left.check().is_ok().then_some(left)
+    }
+
     fn least_radius(&self) -> f64 {
         self.tube.min(self.radius - self.tube)
     }

@@ -57,7 +57,7 @@ impl Compiler<'_> {
     /// What of a box is no farther than the node at `site` reaches along the axes of its frame.
     pub(super) fn cut_to_support(&self, site: Site<'_>, bounds: Bounds) -> Bounds {
         let context = self.contexts.get(site.context);
-        if bounds.is_empty() || context.shift.is_some() {
+        if bounds.is_empty() || context.moved.is_some() {
             return bounds;
         }
         bounds.intersection(&snug(box_under(site.solid, &context.forward)))

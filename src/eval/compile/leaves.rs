@@ -9,7 +9,7 @@ use crate::Bounds;
 use crate::eval::apart::measured;
 use crate::eval::coat::Coat;
 use crate::eval::code::{Built, grow, snug};
-use crate::eval::context::{is_similarity, least_stretch};
+use crate::eval::context::{Context, is_similarity, least_stretch};
 use crate::eval::nothing::Nothing;
 use crate::eval::program::Kind;
 use crate::eval::scene::Instance;
@@ -22,8 +22,13 @@ use rvachev_num::column_times;
 
 impl Compiler<'_> {
     pub(super) fn leaf(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> Built {
-        let shift = self.contexts.get(site.context).shift.unwrap_or(0.0);
-        self.shifted(field, site, shift)
+        let Context { moved, scale, .. } = *self.contexts.get(site.context);
+        let moved = moved.unwrap_or_default();
+        // What stays of its kind has values that are distances outside as well.
+        match (moved.depth > 0.0).then(|| field.eroded(moved.depth / scale)).flatten() {
+            Some(left) if field.exact() => self.shifted(&left, site, moved.shift),
+            _ => self.shifted(field, site, moved.level()),
+        }
     }
 
     /// The surface of a length's operand as a leaf, its distance moved by `by`.
@@ -58,7 +63,7 @@ impl Compiler<'_> {
     /// What is added to values that are moved by `by`, in the frame's unit.
     fn shift(&self, site: Site<'_>, by: f64) -> f64 {
         let context = self.contexts.get(site.context);
-        context.shift.unwrap_or(0.0) + by * context.scale
+        context.moved.unwrap_or_default().level() + by * context.scale
     }
 
     fn made_at(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> Built {
@@ -88,7 +93,7 @@ impl Compiler<'_> {
             surface,
             sides: Sides { inside, outside: Bounds::ALL },
             swell: Swell::of(inside, growth),
-            gauge: field.gauge_radius().filter(|_| context.shift.is_none()).map(|radius| radius * context.scale),
+            gauge: field.gauge_radius().filter(|_| context.moved.is_none()).map(|radius| radius * context.scale),
         }
     }
 
@@ -98,11 +103,12 @@ impl Compiler<'_> {
         let (axes, unit) = (context.forward.matrix3.abs(), field.growth());
         let growth = (0..3).map(|axis| column_times(axes.col(axis), unit[axis])).sum::<DVec3>() / context.scale;
         let mut bounds = snug(field.bounds_under(&context.forward));
-        if shift > 0.0 {
-            bounds = grow(&bounds, growth * shift);
-        } else if shift < 0.0 && field.exact() && is_similarity(&context.forward.matrix3) {
-            // A distance is no larger than that to the sides of the box, however it is turned.
+        if shift != 0.0 && field.exact() && is_similarity(&context.forward.matrix3) {
+            // A distance tells of the sides of the box what it tells of the surface, however it is
+            // turned.
             bounds = grow(&bounds, DVec3::splat(shift * least_stretch(&context.forward.matrix3) / context.scale));
+        } else if shift > 0.0 {
+            bounds = grow(&bounds, growth * shift);
         }
         let number = self.scene.leaves.len() as u32;
         self.scene.add(Instance {

@@ -53,7 +53,7 @@ impl Shape {
             let p = self.positions[*first].to_array();
             let found = p.into_iter().find(|x| !is_coordinate(*x)).unwrap_or(f64::NAN);
             let (points, expected) = (self.positions.len(), expected_coordinate());
-            let mut found = found.to_string();
+            let mut found = format!("{found:?}");
             if count > 1 {
                 let others: Vec<String> = self.places[1..].iter().map(FilePlace::to_string).collect();
                 let more = if count > self.places.len() { ", …" } else { "" };

@@ -74,7 +74,7 @@ pub(super) fn lines(data: &[u8]) -> impl Iterator<Item = (u64, &[u8])> {
 pub(super) fn position(coordinates: [f64; 3], place: impl FnOnce() -> FilePlace) -> Result<DVec3, ReadError> {
     match coordinates.iter().find(|x| !is_coordinate(**x)) {
         None => Ok(DVec3::from_array(coordinates)),
-        Some(x) => Err(ReadError::content(place(), expected_coordinate(), x.to_string())),
+        Some(x) => Err(ReadError::content(place(), expected_coordinate(), format!("{x:?}"))),
     }
 }
 

@@ -13,11 +13,10 @@ impl SurfaceDistance {
         if self.side.is_some() || !zone.is_finite() {
             return None;
         }
-        let distance = self.patches.distance(self.flattened(zone.centre))?;
         // Lanes round their points.
-        let slack = self.slack(zone, distance) + 4.0 * self.roundoff(zone.reach());
+        let [near, _] = self.distances(zone, 4.0 * self.roundoff(zone.reach()))?;
         let mut narrowed = self.clone();
-        if distance > self.radius(zone) + slack || self.apart(zone, slack) > 0.0 {
+        if near > 0.0 {
             let sign = self.sign.value(zone.centre.to_array());
             narrowed.side = Some(sign.signum());
             return (sign != 0.0).then_some(narrowed);

@@ -156,6 +156,28 @@ impl SurfaceDistance {
         2.0 * (self.error + self.patches.rounding()) + 1e-12 * (zone.reach() + distance)
     }
 
+    /// How far points of a zone are from the surface at least and at most, where both may be off by
+    /// a little more than they are; nothing if there is no surface.
+    pub(super) fn distances(&self, zone: &Zone, more: f64) -> Option<[f64; 2]> {
+        let (bounds, radius) = (self.patches.bounds(), self.radius(zone));
+        let size = bounds.size().length();
+        // A zone that is larger than the surface is told as much by its box, and from far away all
+        // patches are as near as each other.
+        if radius > size && !self.patches.is_empty() {
+            let (own, farthest) = (self.across(zone).hull(), self.farthest(zone, bounds.center()) + size);
+            let gap = |axis: usize| (own[axis].lo() - bounds.max[axis]).max(bounds.min[axis] - own[axis].hi()).max(0.0);
+            let slack = self.slack(zone, farthest) + more;
+            return Some([DVec3::new(gap(0), gap(1), gap(2)).length() - slack, farthest + slack]);
+        }
+        let foot = self.patches.nearest(self.flattened(zone.centre))?;
+        let slack = self.slack(zone, foot.distance) + more;
+        let within_ball = foot.distance - radius - slack;
+        let apart = if within_ball <= 0.0 && self.side.is_none() { self.apart(zone, slack) } else { 0.0 };
+        // No point is farther from the surface than from that one point of it.
+        let far = (foot.distance + radius).min(self.farthest(zone, foot.point)) + slack;
+        Some([if apart > 0.0 { apart } else { within_ball }, far])
+    }
+
     /// How far a point of the surface is from points of a zone at most.
     fn farthest(&self, zone: &Zone, point: DVec3) -> f64 {
         let way = |axis: usize| {
@@ -293,16 +315,8 @@ impl AnyField for SurfaceDistance {
             return self.side(zone);
         }
         let at = zone.centre.to_array();
-        let Some(foot) = self.patches.nearest(self.flattened(zone.centre)) else {
-            return Interval::point(self.value(at));
-        };
-        let (sign, slack) = (self.sign(at), self.slack(zone, foot.distance));
-        let within_ball = foot.distance - self.radius(zone) - slack;
-        let apart = if within_ball <= 0.0 && self.side.is_none() { self.apart(zone, slack) } else { 0.0 };
-        let near = if apart > 0.0 { apart } else { within_ball };
-        // No point is farther from the surface than from that one point of it.
-        let far = (foot.distance + self.radius(zone)).min(self.farthest(zone, foot.point)) + slack;
-        let range = Interval::new(near, far.max(near));
+        let Some([near, far]) = self.distances(zone, 0.0) else { return Interval::point(self.value(at)) };
+        let (range, sign) = (Interval::new(near, far.max(near)), self.sign(at));
         let range = if sign < 0.0 { -range } else { range };
         // Where the surface is out of reach, so is a change of the sign.
         if range.lo() > 0.0 || range.hi() < 0.0 { range } else { range.narrowed_by(self.side(zone)) }

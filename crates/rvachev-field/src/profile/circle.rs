@@ -55,6 +55,11 @@ impl Field for Circle {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Circle> {
+        let left = Circle { radius: self.radius - depth };
+        left.check().is_ok().then_some(left)
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, flattened(region))
     }

@@ -81,6 +81,11 @@ impl Field for Rectangle {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Rectangle> {
+        let left = Rectangle { size: self.size - 2.0 * depth, radius: (self.radius - depth).max(0.0) };
+        left.check().is_ok().then_some(left)
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, flattened(region))
     }

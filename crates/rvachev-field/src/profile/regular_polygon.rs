@@ -144,6 +144,11 @@ impl Field for RegularPolygon {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<RegularPolygon> {
+        let left = RegularPolygon::new(self.sides, self.radius * (1.0 - depth / self.inscribed));
+        left.check().is_ok().then_some(left)
+    }
+
     fn range(&self, [x, y, _]: [Interval; 3]) -> Interval {
         // Between the inscribed and the circumscribed circle; the tangent does the rest.
         let distance = x.norm_as(y, Euclid);

@@ -45,6 +45,11 @@ impl Field for Span {
         true
     }
 
+    fn eroded(&self, depth: f64) -> Option<Span> {
+        let half_height = self.half_height - depth;
+        (half_height > 0.0).then(|| Span { half_height, ..self.clone() })
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         self.over(region)
     }
