@@ -323,7 +323,12 @@
 //! operand when it is first asked for. It is then kept for all solids that are equal to the
 //! operand, until the last of them is dropped; [`Solid::prepare`](crate::Solid::prepare) does it
 //! ahead of time. Of solids without bounds those parts are measured that are asked for, and of
-//! lattices one cell.
+//! lattices one cell. A wall that a length leaves a few thousandths of its thickness of takes long,
+//! as does one that it just eats up: a plate of 1 that is part of something larger, rounded by .5, a
+//! minute and more, by .49 or .51 a second or two.
+//!
+//! Values of what is measured are searches: a picture takes five to ten times as long as that of
+//! the plain solid, close up on a fillet up to forty times.
 //!
 //! ```
 //! use rvachev::Solid;

@@ -60,7 +60,9 @@ pub enum Features {
     ///
     /// Where a crease passes cells that have no surface of their own (all their corners are on the
     /// same side), the cells around, up to four along each axis, share a vertex on it, if their
-    /// surface is a disc; else the crease is cut off there by a part of a cell.
+    /// surface is a disc; else the crease is cut off there by a part of a cell. An edge that is
+    /// much sharper than a right angle passes between the nodes of cells: the rim of a flat cone
+    /// (15°) is cut off by up to one and a half cells, here more and there less.
     #[default]
     Sharp,
 }

@@ -10,7 +10,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use glam::{DVec3, Vec3};
 use rvachev::{
     Blend, Camera, CellSize, ContourSettings, Mesh, MeshSettings, MeshSolid, OpenEdges, Paint, RenderSettings, Run,
-    Solid, rad,
+    Solid, deg, rad,
 };
 
 /// A mesh from corners and numbers.
@@ -76,6 +76,21 @@ fn offsets_and_shells_have_no_dust() {
     assert!(shell.is_sound() && shell.shells == 2, "{shell}");
     let opened = meshed(&solid(&block([-5.0; 3], [5.0; 3])).rounded(2.0), 40).check();
     assert!(opened.shells == 1 && (opened.volume / 907.705 - 1.0).abs() < 3e-3, "{}", opened.volume);
+}
+
+/// Turned, it is as large as its corners reach, and not as its box does.
+#[test]
+fn turned_meshes_stand_where_their_corners_are() {
+    let settings = MeshSettings { cell: CellSize::LongestSide(40), ..MeshSettings::default() };
+    let disc = solid(&Solid::cylinder(20.0, 3.0).mesh(&settings).unwrap());
+    for turn in [disc.rotate_z(deg(45.0)), disc.rotate_z(deg(10.0)).translate([0.0, 0.0, 1.0])] {
+        let bounds = turn.bounds().unwrap();
+        assert!((bounds.max.x - 20.0).abs() < 0.05 && (bounds.min.y + 20.0).abs() < 0.05, "{bounds:?}");
+    }
+    // It stands on the ground, and not above it.
+    let cube = solid(&block([-1.0; 3], [1.0; 3])).rotate_x(deg(45.0)).rotate_y(deg(30.0)).on_ground().unwrap();
+    let lowest = cube.mesh(&settings).unwrap().bounds().min.z;
+    assert!(lowest.abs() < 1e-3, "{lowest}");
 }
 
 #[test]

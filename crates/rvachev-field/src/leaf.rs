@@ -284,7 +284,7 @@ impl<F: Field> Case for F {
 }
 
 /// The box of a shape after `map`, by its support function.
-fn bounds_by_support(support: &dyn Fn(DVec3) -> f64, map: &DAffine3) -> Bounds {
+pub(super) fn bounds_by_support(support: &dyn Fn(DVec3) -> f64, map: &DAffine3) -> Bounds {
     let rows = map.matrix3.transpose();
     let mut bounds = Bounds::new(map.translation, map.translation);
     for axis in 0..3 {

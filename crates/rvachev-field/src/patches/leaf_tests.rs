@@ -128,8 +128,10 @@ fn lanes_are_the_values_of_single_points() {
 fn ranges_hold_samples() {
     let mut random = Random(7);
     for field in [ball(4), slab(DVec3::new(0.5, 0.25, 0.75))] {
-        for _ in 0..300 {
-            let (centre, size) = (random.point(1.5), 0.3 * random.next());
+        for round in 0..400 {
+            // Some are larger than the surface, and some of these are far away.
+            let size = if round % 4 == 0 { 2f64.powf(10.0 * random.next()) } else { 0.3 * random.next() };
+            let centre = random.point(if size > 1.0 { 3.0 * size } else { 1.5 });
             let bounds = Bounds::from_center(centre, DVec3::splat(size));
             let range = field.range(&Zone::of_bounds(&bounds));
             for _ in 0..20 {
@@ -138,6 +140,18 @@ fn ranges_hold_samples() {
             }
         }
     }
+}
+
+#[test]
+fn zones_that_are_larger_than_the_surface_are_told_by_its_box() {
+    let half = DVec3::new(0.5, 0.25, 0.75);
+    let field = slab(half);
+    let about = |centre: DVec3| Zone::of_bounds(&Bounds::from_center(centre, DVec3::splat(8.0)));
+    assert!(field.range(&about(DVec3::new(9.0, 0.0, 0.0))).hi() < -0.49);
+    // Both sides are in it.
+    let around = field.range(&about(DVec3::X));
+    assert!(around.contains(half.min_element()) && around.contains(-10.0));
+    assert!(field.narrowed(&about(DVec3::splat(20.0))).is_some_and(|leaf| leaf.value([20.0; 3]) < 0.0));
 }
 
 #[test]

@@ -50,6 +50,7 @@ mod plane;
 mod room;
 mod search;
 mod solid;
+mod support;
 mod surface_distance;
 #[cfg(test)]
 mod tests;

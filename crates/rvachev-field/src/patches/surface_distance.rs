@@ -156,8 +156,9 @@ impl SurfaceDistance {
         2.0 * (self.error + self.patches.rounding()) + 1e-12 * (zone.reach() + distance)
     }
 
-    /// How far points of a zone are from the surface at least and at most, where both may be off by
-    /// a little more than they are; nothing if there is no surface.
+    /// How far points of a zone are from the surface on its centre's side, at least and at most,
+    /// where both may be off by a little more than they are; less than nothing on the other side.
+    /// Nothing if there is no surface.
     pub(super) fn distances(&self, zone: &Zone, more: f64) -> Option<[f64; 2]> {
         let (bounds, radius) = (self.patches.bounds(), self.radius(zone));
         let size = bounds.size().length();
@@ -166,8 +167,9 @@ impl SurfaceDistance {
         if radius > size && !self.patches.is_empty() {
             let (own, farthest) = (self.across(zone).hull(), self.farthest(zone, bounds.center()) + size);
             let gap = |axis: usize| (own[axis].lo() - bounds.max[axis]).max(bounds.min[axis] - own[axis].hi()).max(0.0);
-            let slack = self.slack(zone, farthest) + more;
-            return Some([DVec3::new(gap(0), gap(1), gap(2)).length() - slack, farthest + slack]);
+            let (apart, far) = (DVec3::new(gap(0), gap(1), gap(2)).length(), self.slack(zone, farthest) + more);
+            let (apart, far) = (apart - far, farthest + far);
+            return Some([if apart > 0.0 { apart } else { -far }, far]);
         }
         let foot = self.patches.nearest(self.flattened(zone.centre))?;
         let slack = self.slack(zone, foot.distance) + more;

@@ -8,6 +8,7 @@ use super::super::SurfaceDistance;
 use super::MeshLeaf;
 use super::rim::Membrane;
 use crate::kernel::{Element, distinct, repeat};
+use crate::leaf::bounds_by_support;
 use crate::{
     AnyField, Bounds, COORDINATE_LIMIT, Chunk, Dual, Facets, Interval, Layer, ParamError, Placement, VALUE_LIMIT, Way,
     Zone, bits, steep_slopes,
@@ -82,8 +83,13 @@ impl AnyField for MeshLeaf {
     }
 
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
-        // What is kept of the triangles is rounded.
-        self.bounds.inflate(self.patches().rounding()).transformed(map)
+        // What is kept of the triangles is rounded; what is not turned is known better.
+        let own = self.bounds.inflate(self.patches().rounding()).transformed(map);
+        // What fills an opening is no triangle.
+        if self.membrane.is_some() {
+            return own;
+        }
+        own.intersection(&bounds_by_support(&|direction| self.patches().support(direction), map))
     }
 
     fn check(&self) -> Result<(), ParamError> {
