@@ -391,6 +391,9 @@ impl<'e> Compiler<'e> {
                 }
                 let by = match *length {
                     Length::Level(c) => return Ok(self.code.level(c * context.scale, below[0])),
+                    Length::Offset(d) if context.by_value && !below.is_empty() => {
+                        return Ok(self.code.level(d * context.scale, below[0]));
+                    }
                     Length::Offset(d) => d,
                     Length::Shell(t) => -t,
                     Length::Rounded(_) | Length::Filleted(_) if self.exact.is_closed(site.solid) => {

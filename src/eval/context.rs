@@ -27,6 +27,8 @@ pub(super) struct Context {
     pub(super) scale: f64,
     /// Below a length: how the leaves' surfaces are moved, in the frame's unit.
     pub(super) moved: Option<Move>,
+    /// Whether what is moved is read by its value, on both sides, and not by its surface.
+    pub(super) by_value: bool,
 }
 
 /// The points at least `depth` inside, and then all that are within `shift` of these. Moves add up
@@ -71,7 +73,8 @@ pub(super) struct Contexts {
 impl Contexts {
     pub(super) fn new() -> Contexts {
         let identity = DAffine3::IDENTITY;
-        let world = Context { frame: 0, to_local: identity, forward: identity, scale: 1.0, moved: None };
+        let world =
+            Context { frame: 0, to_local: identity, forward: identity, scale: 1.0, moved: None, by_value: false };
         Contexts { contexts: vec![world], ..Contexts::default() }
     }
 
@@ -123,8 +126,10 @@ impl Contexts {
                 (0..operands.len()).map(|i| (i, self.flip_if(context, difference && i > 0))).collect()
             }
             // Never below a length that is closed.
-            Node::Blend { operands, .. } | Node::Rim { operands, .. } => {
-                (0..operands.len()).map(|i| (i, context)).collect()
+            Node::Blend { operands, .. } => (0..operands.len()).map(|i| (i, context)).collect(),
+            Node::Rim { operands, .. } => {
+                let inner = self.push(Context { by_value: true, ..above });
+                (0..operands.len()).map(|i| (i, inner)).collect()
             }
             Node::Length { length, .. } => match *length {
                 Length::Rounded(radius) if exact.is_closed(solid) => {
@@ -137,6 +142,10 @@ impl Contexts {
                     Length::Shell(_) => vec![(0, context)],
                     _ => Vec::new(),
                 },
+                Length::Offset(_) if above.by_value => {
+                    let moved = Some(above.moved.unwrap_or_default());
+                    vec![(0, self.push(Context { moved, by_value: false, ..above }))]
+                }
                 Length::Offset(d) => vec![(0, self.moved(context, d))],
                 Length::Shell(t) => vec![(0, context), (0, self.moved(context, -t))],
             },

@@ -88,7 +88,7 @@ fn turned_meshes_stand_where_their_corners_are() {
         assert!((bounds.max.x - 20.0).abs() < 0.05 && (bounds.min.y + 20.0).abs() < 0.05, "{bounds:?}");
     }
     // It stands on the ground, and not above it.
-    let cube = solid(&block([-1.0; 3], [1.0; 3])).rotate_x(deg(45.0)).rotate_y(deg(30.0)).on_ground().unwrap();
+    let cube = solid(&block([-1.0; 3], [1.0; 3])).rotate_x(deg(45.0)).rotate_y(deg(30.0)).on_ground();
     let lowest = cube.mesh(&settings).unwrap().bounds().min.z;
     assert!(lowest.abs() < 1e-3, "{lowest}");
 }
