@@ -14,6 +14,7 @@ use super::regions::{Region, Regions};
 use super::samples::{Kind, Samples};
 use super::seeds::{Seed, Seeds};
 use super::settle::{Settled, Taken, settle};
+use crate::fit::linear::Principal;
 use crate::fit::random::Random;
 use crate::{Cancelled, Run};
 
@@ -159,15 +160,21 @@ impl<'a> Detector<'a> {
             voters.push(&by_samples);
         }
         let mut frames = vec![DMat3::IDENTITY];
-        for axis in axes(&voters, &mut self.random) {
+        let add = |frames: &mut Vec<DMat3>, axis: DVec3| {
             let frame = about(self.directions.settled(axis, f64::INFINITY));
             if frames[1..].iter().all(|f| f.z_axis.cross(frame.z_axis).length() > 1e-3) {
                 frames.push(frame);
             }
+        };
+        axes(&voters, &mut self.random).into_iter().for_each(|axis| add(&mut frames, axis));
+        let voted = frames.len();
+        if self.samples.kind == Kind::Scan && self.found.is_empty() {
+            principal(self.samples).into_iter().for_each(|axis| add(&mut frames, axis));
         }
         let mut columns: Vec<Columns> = frames.into_iter().map(|frame| self.columns(frame)).collect();
         let mut heap = BinaryHeap::new();
-        let guesses = self.guesses(&seeds, &columns);
+        let mut guesses = self.guesses(&seeds, &columns[..voted]);
+        self.guesses_about(&seeds, (&columns, voted), &mut guesses);
         for (i, mut guess) in guesses.into_iter().enumerate() {
             if i % AT_ONCE == 0 {
                 run.check()?;
@@ -239,12 +246,20 @@ impl<'a> Detector<'a> {
         for seeds in seeds {
             let slack = self.limits.slack(seeds.exact);
             self.of_pairs(seeds, SPHERES, 0, |pair| sphere(pair, slack), &mut guesses);
-            for (frame, columns) in columns.iter().enumerate().skip(1) {
-                let to = |pair| revolved(&columns.frame, pair, slack);
-                self.of_pairs(seeds, REVOLVED, frame, to, &mut guesses);
-            }
+            self.guesses_about(&[seeds], (columns, 1), &mut guesses);
         }
         guesses
+    }
+
+    /// Hypotheses of what is round about the axes of frames, from a number on.
+    fn guesses_about(&mut self, seeds: &[&Seeds], (columns, from): (&[Columns], usize), guesses: &mut Vec<Guess>) {
+        for seeds in seeds {
+            let slack = self.limits.slack(seeds.exact);
+            for (frame, columns) in columns.iter().enumerate().skip(from) {
+                let to = |pair| revolved(&columns.frame, pair, slack);
+                self.of_pairs(seeds, REVOLVED, frame, to, guesses);
+            }
+        }
     }
 
     fn of_pairs(
@@ -276,10 +291,17 @@ impl<'a> Detector<'a> {
         let regions: Vec<Region> = self.found.into_iter().map(Settled::region).collect();
         let mut frames = self.directions.frames();
         if frames.is_empty() {
-            frames.push(crate::fit::linear::Principal::of(self.samples.points.iter().copied()).axes);
+            frames.push(Principal::of(self.samples.points.iter().copied()).axes);
         }
         Regions { regions, frames, eps: self.limits.eps }
     }
+}
+
+/// The principal axes of the samples. Few pairs of normals are across the axis of a torus; where it
+/// is alone, it is one of these.
+fn principal(samples: &Samples) -> [DVec3; 3] {
+    let axes = Principal::of(samples.points.iter().copied()).axes;
+    [axes.x_axis, axes.y_axis, axes.z_axis]
 }
 
 /// Whether two shapes of a frame are nearly one.

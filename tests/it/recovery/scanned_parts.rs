@@ -147,6 +147,22 @@ fn a_scanned_bracket_is_three_leaves() {
     }
 }
 
+/// Of nothing beside it that has a direction.
+#[test]
+fn a_scanned_ring_alone_is_a_ring() {
+    let axis = DVec3::new(1.0, 2.0, 2.0) / 3.0;
+    for (tube, noise) in [(6.0, 0.0), (15.0, 0.1)] {
+        let truth = Solid::torus(30.0, tube).rotate_about(axis, rvachev::deg(40.0));
+        let (points, normals) = scanned(&meshed(&truth), 4000, noise, |_| true);
+        let cloud = PointCloud::new(points).unwrap().with_normals(normals).unwrap();
+        for seed in [0, 1] {
+            let fit = part_of_points(&cloud, &PartSettings { seed, ..PartSettings::default() }).unwrap();
+            assert_eq!(kinds(&fit).len(), 1, "{tube} {seed}: {:?}", kinds(&fit));
+            assert!(iou(&fit, &truth) > 0.98, "{tube} {seed}: {} {:?}", iou(&fit, &truth), kinds(&fit));
+        }
+    }
+}
+
 #[test]
 fn axes_of_a_scan_are_settled_unless_it_is_refused() {
     let truth = bracket().rotate_about(DVec3::new(2.0, -1.0, 1.0).normalize(), rvachev::deg(0.6));
