@@ -68,7 +68,7 @@ impl Values<'_> {
         if count >= 0.0 && count.fract() == 0.0 {
             return Ok(count as u64);
         }
-        Err(ReadError::content(place, format!("how many of {name} there are"), format!("{count:?}")))
+        Err(ReadError::content(place, format!("how many of {name} there are"), count.to_string()))
     }
 }
 
@@ -216,7 +216,7 @@ fn read_faces(
                         let index = values.next(number, &property.name)?;
                         if !(index >= 0.0 && index < vertices as f64 && index.fract() == 0.0) {
                             let expected = format!("a vertex from 0, of {vertices} vertices");
-                            return Err(ReadError::content(place, expected, format!("{index:?}")));
+                            return Err(ReadError::content(place, expected, index.to_string()));
                         }
                         polygon.push(index as u32);
                     }
