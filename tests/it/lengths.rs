@@ -334,7 +334,7 @@ fn chain(pins: u32) -> Solid {
 
 #[test]
 fn chains_of_fillets_have_no_limit() -> Outcome {
-    let pins = 16;
+    let pins = 8;
     let all = chain(pins);
     let report = mesh_at(&all, CellSize::Length(0.45))?.check();
     assert!(report.is_sound() && report.shells == 1, "{report}");

@@ -120,7 +120,7 @@ fn note(part: &Part, names: &mut BTreeSet<&'static str>, measured: &mut BTreeSet
 #[test]
 fn of_every_kind_there_is_a_share() {
     let mut kinds = Kinds::default();
-    for solid in (0..2000).filter_map(|seed| super::make::made(seed, 0.3)) {
+    for solid in (0..600).filter_map(|seed| super::make::made(seed, 0.3)) {
         kinds.add(&(&solid).into());
     }
     println!("{kinds}");
