@@ -379,7 +379,7 @@ impl<'e> Compiler<'e> {
                         let joined = self.code.operation(*operation, rule, context.frame, &below);
                         let inner = self.contexts.below(site.solid, site.context).first().map(|(_, inner)| *inner);
                         let done = inner.and_then(|inner| self.contexts.get(inner).moved).unwrap_or_default();
-                        self.code.level(moved.level() + done.depth, joined)
+                        self.code.level(moved.level() + done.depth + context.level, joined)
                     }
                     (Some(_), _) => self.code.operation(*operation, Rule::MinMax, context.frame, &below),
                 })
@@ -391,9 +391,6 @@ impl<'e> Compiler<'e> {
                 }
                 let by = match *length {
                     Length::Level(c) => return Ok(self.code.level(c * context.scale, below[0])),
-                    Length::Offset(d) if context.by_value && !below.is_empty() => {
-                        return Ok(self.code.level(d * context.scale, below[0]));
-                    }
                     Length::Offset(d) => d,
                     Length::Shell(t) => -t,
                     Length::Rounded(_) | Length::Filleted(_) if self.exact.is_closed(site.solid) => {

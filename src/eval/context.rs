@@ -27,8 +27,11 @@ pub(super) struct Context {
     pub(super) scale: f64,
     /// Below a length: how the leaves' surfaces are moved, in the frame's unit.
     pub(super) moved: Option<Move>,
-    /// Whether what is moved is read by its value, on both sides, and not by its surface.
+    /// Whether an offset is read by its values, which are its operand's and a number, and not by its
+    /// surface.
     pub(super) by_value: bool,
+    /// That number, in the frame's unit.
+    pub(super) level: f64,
 }
 
 /// The points at least `depth` inside, and then all that are within `shift` of these. Moves add up
@@ -73,8 +76,15 @@ pub(super) struct Contexts {
 impl Contexts {
     pub(super) fn new() -> Contexts {
         let identity = DAffine3::IDENTITY;
-        let world =
-            Context { frame: 0, to_local: identity, forward: identity, scale: 1.0, moved: None, by_value: false };
+        let world = Context {
+            frame: 0,
+            to_local: identity,
+            forward: identity,
+            scale: 1.0,
+            moved: None,
+            by_value: false,
+            level: 0.0,
+        };
         Contexts { contexts: vec![world], ..Contexts::default() }
     }
 
@@ -118,7 +128,7 @@ impl Contexts {
                 let is_left = *operation == Operation::Intersection
                     && operands.iter().all(|operand| erodes(operand, moved.depth / above.scale));
                 let depth = if is_left { moved.depth } else { 0.0 };
-                let inner = self.push(Context { moved: Some(Move { depth, shift: 0.0 }), ..above });
+                let inner = self.push(Context { moved: Some(Move { depth, shift: 0.0 }), level: 0.0, ..above });
                 (0..operands.len()).map(|i| (i, inner)).collect()
             }
             Node::Join { operation, operands, .. } => {
@@ -142,9 +152,9 @@ impl Contexts {
                     Length::Shell(_) => vec![(0, context)],
                     _ => Vec::new(),
                 },
-                Length::Offset(_) if above.by_value => {
-                    let moved = Some(above.moved.unwrap_or_default());
-                    vec![(0, self.push(Context { moved, by_value: false, ..above }))]
+                Length::Offset(d) if above.by_value => {
+                    let (moved, level) = (Some(above.moved.unwrap_or_default()), above.level + d * above.scale);
+                    vec![(0, self.push(Context { moved, by_value: false, level, ..above }))]
                 }
                 Length::Offset(d) => vec![(0, self.moved(context, d))],
                 Length::Shell(t) => vec![(0, context), (0, self.moved(context, -t))],
@@ -173,7 +183,7 @@ impl Contexts {
         if let Some(&flipped) = self.flips.get(&context) {
             return flipped;
         }
-        let flipped = self.push(Context { moved: Some(moved.flipped()), ..above });
+        let flipped = self.push(Context { moved: Some(moved.flipped()), level: -above.level, ..above });
         self.flips.insert(context, flipped);
         self.flips.insert(flipped, context);
         flipped

@@ -22,12 +22,12 @@ use rvachev_num::column_times;
 
 impl Compiler<'_> {
     pub(super) fn leaf(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> Built {
-        let Context { moved, scale, .. } = *self.contexts.get(site.context);
+        let Context { moved, scale, level, .. } = *self.contexts.get(site.context);
         let moved = moved.unwrap_or_default();
         // What stays of its kind has values that are distances outside as well.
         match (moved.depth > 0.0).then(|| field.eroded(moved.depth / scale)).flatten() {
-            Some(left) if field.exact() => self.shifted(&left, site, moved.shift),
-            _ => self.shifted(field, site, moved.level()),
+            Some(left) if field.exact() => self.shifted(&left, site, moved.shift + level),
+            _ => self.shifted(field, site, moved.level() + level),
         }
     }
 
@@ -63,7 +63,7 @@ impl Compiler<'_> {
     /// What is added to values that are moved by `by`, in the frame's unit.
     fn shift(&self, site: Site<'_>, by: f64) -> f64 {
         let context = self.contexts.get(site.context);
-        context.moved.unwrap_or_default().level() + by * context.scale
+        context.moved.unwrap_or_default().level() + context.level + by * context.scale
     }
 
     fn made_at(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> Built {
