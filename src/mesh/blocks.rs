@@ -62,14 +62,6 @@ impl Blocks {
         Ok(Blocks { cells, programs: Programs { numbers, all: found.programs }, exact: Vec::new() })
     }
 
-    /// Those whose first cells are chosen.
-    pub(super) fn only(&self, is_chosen: impl Fn([u32; 3]) -> bool) -> Blocks {
-        let chosen: Vec<usize> = (0..self.cells.len()).filter(|n| is_chosen(self.cells[*n])).collect();
-        let cells = chosen.iter().map(|n| self.cells[*n]).collect();
-        let all = chosen.iter().map(|n| self.programs.of(*n).clone()).collect();
-        Blocks { cells, programs: Programs { numbers: (0..chosen.len() as u32).collect(), all }, exact: Vec::new() }
-    }
-
     /// Those of the halved lattice, given with it, in the blocks whose numbers along the axes are
     /// chosen.
     pub(super) fn halves(&self, lattice: &Lattice, is_chosen: impl Fn([u32; 3]) -> bool) -> Blocks {

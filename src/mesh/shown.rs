@@ -14,7 +14,7 @@ use super::sampler::{BESIDE, Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
 use super::subject::Subject;
 use crate::eval::Program;
-use crate::geom::{Findings, Mesh};
+use crate::geom::Mesh;
 use crate::{Bounds, Cancelled, Run};
 use rvachev_num::jobs;
 
@@ -76,15 +76,14 @@ impl Subject<'_> {
     /// The cells of a mesh of this that have all their nodes on one side, and may have the surface
     /// in them.
     pub(crate) fn hidden(&self, mesh: &Mesh, run: &Run) -> Result<Vec<Hidden>, MeshingError> {
-        let Findings { cell, lost_at, .. } = mesh.findings();
-        let is_gentle = self.program.has_gentle_leaves();
-        if *cell == 0.0 || lost_at.is_empty() && !is_gentle {
+        let cell = mesh.findings().cell;
+        if cell == 0.0 {
             return Ok(Vec::new());
         }
-        let lattice = Lattice::new(&self.bounds, CellSize::Length(*cell))?;
+        let lattice = Lattice::new(&self.bounds, CellSize::Length(cell))?;
         let [to_find, to_search] = run.stages([0.2, 0.8]);
         let blocks = Blocks::find(self.program, &lattice, &to_find)?;
-        if is_gentle {
+        if self.program.has_gentle_leaves() {
             // What cells beside others hide as well is of no matter where nothing is hidden by
             // itself.
             let alone = self.crossed(&blocks, &lattice, Beside::Nothing, &to_search)?;
@@ -94,7 +93,8 @@ impl Subject<'_> {
                 self.crossed(&blocks, &lattice, Beside::All, &to_search)?
             });
         }
-        let blocks = blocks.only(|block| lost_at.contains(&lattice.region(block, BLOCK).center()));
+        // What a mesh says that it may have lost is not all: in blocks with a crossing it looks for
+        // little.
         let suspects = unresolved_cells(&blocks, (&lattice, self.bounds), Among::OneSided, &to_search)?;
         let of_block = |Unresolved { block, cells }: Unresolved| {
             let at = move |within: &[usize; 3]| [0, 1, 2].map(|axis| block[axis] + within[axis] as u32);
