@@ -260,8 +260,8 @@
 //! Of their kind stay, where they are moved in, spheres, boxes, rounded boxes, cylinders, capsules,
 //! tori, prisms, slabs and half-spaces, cones as long as they are truncated, and circles,
 //! rectangles and regular polygons that are extruded straight. Their roundings are exact, and so
-//! are the shells and offsets of these: an enclosure is `cuboid.rounded(4.0).shell(2.0)`. Of what is
-//! convex a filleting is the solid itself.
+//! are the shells and offsets of these: an enclosure is `cuboid.rounded(4.0).shell(2.0)`. Of what
+//! is convex a filleting is the solid itself.
 //!
 //! ```
 //! use rvachev::{Accuracy, Solid};
@@ -324,8 +324,8 @@
 //! operand, until the last of them is dropped; [`Solid::prepare`](crate::Solid::prepare) does it
 //! ahead of time. Of solids without bounds those parts are measured that are asked for, and of
 //! lattices one cell. A wall that a length leaves a few thousandths of its thickness of takes long,
-//! as does one that it just eats up: a plate of 1 that is part of something larger, rounded by .5, a
-//! minute and more, by .49 or .51 a second or two.
+//! as does one that it just eats up: a plate of 1 that is part of something larger, rounded by .5,
+//! a minute and more, by .49 or .51 a second or two.
 //!
 //! Values of what is measured are searches: a picture takes five to ten times as long as that of
 //! the plain solid, close up on a fillet up to forty times.

@@ -2,8 +2,8 @@
 //!
 //! A node that is reached twice in one context is compiled once. Where the leaves' values are
 //! the distances that an offset or a shell reads ([`Exact`](super::exact::Exact)), an offset
-//! of min and max is the min and max of offsets: it is carried down to the leaves as a [`Move`], its
-//! sign turned by every complement on the way. What comes out is a program like any other.
+//! of min and max is the min and max of offsets: it is carried down to the leaves as a [`Move`],
+//! its sign turned by every complement on the way. What comes out is a program like any other.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -27,8 +27,8 @@ pub(super) struct Context {
     pub(super) scale: f64,
     /// Below a length: how the leaves' surfaces are moved, in the frame's unit.
     pub(super) moved: Option<Move>,
-    /// Whether an offset is read by its values, which are its operand's and a number, and not by its
-    /// surface.
+    /// Whether an offset is read by its values, which are its operand's and a number, and not by
+    /// its surface.
     pub(super) by_value: bool,
     /// That number, in the frame's unit.
     pub(super) level: f64,

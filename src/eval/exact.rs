@@ -11,9 +11,9 @@
 //!     offset inwards           always                of leaves that stay of their kind
 //! ```
 //!
-//! A box that is moved in is a smaller box, whose distance is known outside as well. Moved out again
-//! it is rounded, and, as it is convex, its distance is known everywhere. A convex solid has no
-//! concave edges to fill.
+//! A box that is moved in is a smaller box, whose distance is known outside as well. Moved out
+//! again it is rounded, and, as it is convex, its distance is known everywhere. A convex solid has
+//! no concave edges to fill.
 //!
 //! How deep a solid can be at most is told the same way: half of a leaf's box, a wall's thickness.
 //!

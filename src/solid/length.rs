@@ -132,8 +132,8 @@ impl Solid {
     /// |---|---|---|
     /// | `radius` | length | 10⁻⁹ to 10⁹ |
     ///
-    /// Faces that the ball touches stay the solid's own, exactly; of a convex solid all do. Accuracy
-    /// of all else: that of [`offset`](Solid::offset).
+    /// Faces that the ball touches stay the solid's own, exactly; of a convex solid all do.
+    /// Accuracy of all else: that of [`offset`](Solid::offset).
     ///
     /// ```
     /// use rvachev::Profile;

@@ -107,10 +107,11 @@ pub trait Field: Debug + Send + Sync + 'static {
         false
     }
 
-    /// The points that are at least `depth` inside (the erosion by a ball of that radius), as a leaf
-    /// that is [`exact`](Field::exact) as this one is: what is left of a box is a smaller box. Asked
-    /// of exact leaves, for depths above 0. Where it is known, roundings are closed forms, and need
-    /// no measuring. Default: `None`, where it is no leaf of this kind, or nothing is left.
+    /// The points that are at least `depth` inside (the erosion by a ball of that radius), as a
+    /// leaf that is [`exact`](Field::exact) as this one is: what is left of a box is a smaller box.
+    /// Asked of exact leaves, for depths above 0. Where it is known, roundings are closed forms,
+    /// and need no measuring. Default: `None`, where it is no leaf of this kind, or nothing is
+    /// left.
     fn eroded(&self, _depth: f64) -> Option<Self>
     where
         Self: Sized,
