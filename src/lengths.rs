@@ -259,9 +259,10 @@
 //!
 //! Of their kind stay, where they are moved in, spheres, boxes, rounded boxes, cylinders, capsules,
 //! tori, prisms, slabs and half-spaces, cones as long as they are truncated, and circles,
-//! rectangles and regular polygons that are extruded straight. Their roundings are exact, and so
-//! are the shells and offsets of these: an enclosure is `cuboid.rounded(4.0).shell(2.0)`. Of what
-//! is convex a filleting is the solid itself.
+//! rectangles and regular polygons that are extruded straight. Their roundings are exact. So are
+//! the shells and offsets of these, but for those inwards of a torus, which is not convex: an
+//! enclosure is `cuboid.rounded(4.0).shell(2.0)`. Of what is convex a filleting is the solid
+//! itself.
 //!
 //! ```
 //! use rvachev::{Accuracy, Solid};
@@ -327,7 +328,7 @@
 //! as does one that it just eats up: a plate of 1 that is part of something larger, rounded by .5,
 //! a minute and more, by .49 or .51 a second or two.
 //!
-//! Values of what is measured are searches: a picture takes five to ten times as long as that of
+//! Values of what is measured are searches: a picture takes five to thirty times as long as that of
 //! the plain solid, close up on a fillet up to forty times.
 //!
 //! ```

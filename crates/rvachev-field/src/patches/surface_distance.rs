@@ -167,8 +167,8 @@ impl SurfaceDistance {
         if radius > size && !self.patches.is_empty() {
             let (own, farthest) = (self.across(zone).hull(), self.farthest(zone, bounds.center()) + size);
             let gap = |axis: usize| (own[axis].lo() - bounds.max[axis]).max(bounds.min[axis] - own[axis].hi()).max(0.0);
-            let (apart, far) = (DVec3::new(gap(0), gap(1), gap(2)).length(), self.slack(zone, farthest) + more);
-            let (apart, far) = (apart - far, farthest + far);
+            let slack = self.slack(zone, farthest) + more;
+            let (apart, far) = (DVec3::new(gap(0), gap(1), gap(2)).length() - slack, farthest + slack);
             return Some([if apart > 0.0 { apart } else { -far }, far]);
         }
         let foot = self.patches.nearest(self.flattened(zone.centre))?;
