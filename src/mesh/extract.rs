@@ -43,8 +43,8 @@ use self::lost::{suspected, torn_nodes};
 use self::neighbours::Neighbours;
 use self::parts::Parts;
 use self::skipped::Skips;
-pub(crate) use self::suspect::CellRows;
-use self::suspect::{Suspect, Suspicion};
+pub(crate) use self::suspect::CellBits;
+use self::suspect::Suspect;
 use super::Features;
 use super::feature::{Crease, Slope};
 use super::lattice::Lattice;
@@ -170,7 +170,7 @@ pub(crate) trait Sampler: Sync {
     /// Whether a feature may hide in some cells of a block, all of whose nodes have one sign; so
     /// many intervals may be taken to decide that, and it may if they do not suffice. By default it
     /// may.
-    fn may_hide(&self, _number: usize, _block: [u32; 3], _cells: &CellRows, _intervals: usize) -> bool {
+    fn may_hide(&self, _number: usize, _block: [u32; 3], _cells: &CellBits, _intervals: usize) -> bool {
         true
     }
 
@@ -420,7 +420,7 @@ impl<'a, S: Sampler> Worker<'a, S> {
                 let means = (&mut self.scratch, &mut self.skips);
                 suspected((self.sampler, self.lattice), means, (number, block), (&signs, &self.values))
             } else {
-                None
+                (None, false)
             });
             parts.push(Part { signs, rows, first, triangles, joins });
         }
@@ -441,13 +441,10 @@ impl<'a, S: Sampler> Worker<'a, S> {
             }
         }
         let step = self.lattice.step();
-        let of_block = |(n, (part, why)): (usize, (&Part, Option<Suspicion>))| {
-            let torn = || match torn_nodes(part, [&positions, &normals], step) {
-                [0, 0] => None,
-                counts => Some(Suspicion::Torn(counts)),
-            };
-            let why = why.or_else(|| if watches { torn() } else { None });
-            why.map(|why| Suspect { number: start + n, why })
+        let of_block = |(n, (part, (hidden, is_bored))): (usize, (&Part, (Option<Box<CellBits>>, bool)))| {
+            let torn = if watches { torn_nodes(part, [&positions, &normals], step) } else { [0; 2] };
+            let is_suspect = hidden.is_some() || is_bored || torn != [0; 2];
+            is_suspect.then_some(Suspect { number: start + n, hidden, torn, is_bored })
         };
         let suspects = parts.iter().zip(why).enumerate().filter_map(of_block).collect();
         Ok(Batch { parts, positions, normals, clamped, suspects })

@@ -1,6 +1,6 @@
 //! Whether a feature thinner than a cell may hide in cells of one sign.
 
-use super::extract::CellRows;
+use super::extract::CellBits;
 use super::lattice::Lattice;
 use super::signs::BLOCK;
 use crate::Bounds;
@@ -12,7 +12,7 @@ use crate::eval::{Narrowed, Program};
 pub(super) fn may_hide(
     program: &Program,
     (lattice, block): (&Lattice, [u32; 3]),
-    cells: &CellRows,
+    cells: &CellBits,
     mut ranges: usize,
 ) -> bool {
     /// What finding out whether a cell is entered once takes, in ranges, with those of its eight

@@ -7,7 +7,7 @@ use rvachev_num::jobs;
 
 use super::blocks::{Blocks, Programs, exact_nodes};
 use super::deciders::Deciders;
-use super::extract::{BATCH, BORE, CellRows, Root, Sampler};
+use super::extract::{BATCH, BORE, CellBits, Root, Sampler};
 use super::feature::{Crease, Slope};
 use super::hide::may_hide;
 use super::lattice::Lattice;
@@ -220,7 +220,7 @@ impl Sampler for SolidSampler<'_> {
         true
     }
 
-    fn may_hide(&self, number: usize, block: [u32; 3], cells: &CellRows, intervals: usize) -> bool {
+    fn may_hide(&self, number: usize, block: [u32; 3], cells: &CellBits, intervals: usize) -> bool {
         may_hide(self.programs.of(number), (self.lattice, block), cells, intervals)
     }
 

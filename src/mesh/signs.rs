@@ -67,7 +67,19 @@ impl Signs {
     /// The case of a cell.
     #[inline]
     pub(super) fn case(&self, [i, j, k]: [usize; 3]) -> u8 {
-        case([self.row(j, k), self.row(j + 1, k), self.row(j, k + 1), self.row(j + 1, k + 1)], i)
+        case(self.rows(j, k), i)
+    }
+
+    /// The rows of nodes around a row of cells.
+    #[inline(always)]
+    fn rows(&self, j: usize, k: usize) -> [u16; 4] {
+        [self.row(j, k), self.row(j + 1, k), self.row(j, k + 1), self.row(j + 1, k + 1)]
+    }
+
+    /// The cells of a row that the surface crosses, as bits.
+    #[inline(always)]
+    pub(super) fn crossed_cells(&self, j: usize, k: usize) -> u16 {
+        crossed_cells(self.rows(j, k))
     }
 
     /// Whether nodes of both signs are among them.
@@ -120,6 +132,14 @@ impl Signs {
 #[inline(always)]
 fn case([a, b, c, d]: [u16; 4], i: usize) -> u8 {
     (a >> i & 3 | (b >> i & 3) << 2 | (c >> i & 3) << 4 | (d >> i & 3) << 6) as u8
+}
+
+/// The cells that are crossed, given the rows of nodes around theirs: one of their nodes is inside
+/// and not all are.
+#[inline(always)]
+fn crossed_cells([a, b, c, d]: [u16; 4]) -> u16 {
+    let (any, all) = (a | b | c | d, a & b & c & d);
+    (any | any >> 1) & !(all & all >> 1) & OWNED_BITS
 }
 
 /// Whether a face has nodes of both signs.
@@ -210,11 +230,8 @@ pub(super) fn list_edges(
 pub(super) fn for_each_cell(signs: &Signs, mut visit: impl FnMut([usize; 3], u8)) {
     for k in 0..BLOCK {
         for j in 0..BLOCK {
-            let rows = [signs.row(j, k), signs.row(j + 1, k), signs.row(j, k + 1), signs.row(j + 1, k + 1)];
-            let [a, b, c, d] = rows;
-            let (any, all) = (a | b | c | d, a & b & c & d);
-            // A cell is crossed if one of its nodes is inside and not all are.
-            let mut crossed = (any | any >> 1) & !(all & all >> 1) & OWNED_BITS;
+            let rows = signs.rows(j, k);
+            let mut crossed = crossed_cells(rows);
             while crossed != 0 {
                 let i = crossed.trailing_zeros() as usize;
                 crossed &= crossed - 1;

@@ -97,6 +97,29 @@ fn whatever_hides_between_nodes_is_counted() {
     }
 }
 
+/// Blocks in which something is seen are looked at as well, where they are away from it.
+#[test]
+fn what_hides_beside_what_is_seen_is_counted() {
+    const CELL: f64 = 1.0 / 16.0;
+    let settings = MeshSettings { cell: CellSize::Length(CELL), ..MeshSettings::default() };
+    let plate = Solid::cuboid(DVec3::new(1.0, 1.0, 0.5)) | Solid::cuboid(DVec3::new(0.2, 0.2, 1.5));
+    assert_eq!(plate.mesh(&settings).unwrap().possibly_lost(), 0);
+    let ball = |x: f64| Solid::sphere(1.2 * CELL).translate(DVec3::X * x * CELL);
+    let lens = ball(1.0) & ball(-1.0);
+    let (mut hidden, mut told) = (0, 0);
+    for n in 0..64 {
+        // Some cells above the plate, anywhere between the nodes.
+        let part = DVec3::new(f64::from(n % 4), f64::from(n / 4 % 4), f64::from(n / 16)) / 4.0;
+        let place = (DVec3::splat(5.0) + part) * CELL + DVec3::Z * 0.25;
+        let mesh = (&plate | lens.translate(place)).mesh(&settings).unwrap();
+        if mesh.check().shells == 1 {
+            hidden += 1;
+            told += usize::from(mesh.possibly_lost() > 0);
+        }
+    }
+    assert!(hidden > 10 && told == hidden, "{told} of {hidden}");
+}
+
 /// A fin with a draft is thicker below than above: along it the solid is entered once, and it
 /// passes between the nodes.
 #[test]

@@ -10,11 +10,12 @@
 //!
 //! Extraction itself sees one sign at a time. Three tests cost next to nothing beside it:
 //!
-//! 1. *Hidden*: a block without a crossing, whose interval contained 0 all the same when the
-//!    octree was divided. The Lipschitz bound of the value clears most cells of it by their
-//!    samples alone (sphere tracing's argument). What is left is divided and narrowed by intervals
-//!    until it has no surface, or until it is a cell: that one is lost, unless it is entered once
-//!    along a cone of directions, as a blunt tip is.
+//! 1. *Hidden*: cells without a crossing, of blocks whose interval contained 0 when the octree was
+//!    divided. The Lipschitz bound of the value clears most of them by their samples alone (sphere
+//!    tracing's argument), and those that lead from one to the next to a crossing are tips of what
+//!    is seen. What is left is divided and narrowed by intervals until it has no surface, or until
+//!    it is a cell: that one is lost, unless it is entered once along a cone of directions, as a
+//!    blunt tip is.
 //! 2. *Torn*: a block with many nodes that have a root on either side along an axis, with opposite
 //!    normals, less than [`WALL`] cells apart; or one in and about which most nodes of their sign
 //!    are of this kind. The edge of an acute wedge has such nodes in a line before its others, a
@@ -26,14 +27,14 @@
 //! features are counted if ranges do not tell, and few intervals are taken; the count is the same
 //! for any number of threads.
 //!
-//! Limits: what ends within [`TIP`](super::suspect::TIP) cells of a crossed block is taken for the
-//! tip of what is seen there.
+//! Limits: what is within [`TIP`](super::suspect::TIP) cells of a crossing may be taken for a tip of
+//! what is seen there.
 
 use glam::Vec3;
 
 use super::parts::Parts;
 use super::skipped::{Asked, Skips};
-use super::suspect::{CellRows, Suspect, Suspicion};
+use super::suspect::{CellBits, Suspect};
 use super::{Part, Sampler};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, Signs};
@@ -62,39 +63,56 @@ const INTERVALS: usize = 256;
 /// What a block has at least.
 const LEAST: usize = 640;
 
-/// Whether a block without a crossing, or a bored one, is looked at again, given its samples.
+/// Which cells of a block may have a surface by its samples, if any, but for what is seen in it and
+/// for tips of that; and whether it is bored.
 pub(super) fn suspected<S: Sampler>(
     (sampler, lattice): (&S, &Lattice),
     (scratch, skips): (&mut S::Scratch, &mut Skips),
     (number, block): (usize, [u32; 3]),
     (signs, values): (&Signs, &[f32; NODES]),
-) -> Option<Suspicion> {
-    let slope = |steeper: f64| {
+) -> (Option<Box<CellBits>>, bool) {
+    let slope = |by_samples: f64| {
         let bound = sampler.lipschitz_bound(number, block);
-        if bound.is_finite() { bound * lattice.step() } else { steeper * f64::from(steepest(values)) }
+        if bound.is_finite() { bound * lattice.step() } else { by_samples }
     };
-    if signs.is_mixed() {
-        let is_bored = sampler.is_bored(number, block)
-            || sampler.may_skip(number, block) && {
-                // Of gaps that are steeper than all else some are found.
-                let [most, step] = [slope(1.0), lattice.step()].map(|length| length as f32);
-                skips.are_passed((sampler, scratch), Asked { number, most, step }, (signs, values))
-            };
-        return is_bored.then_some(Suspicion::Bored);
+    let near = |slope: f64| CellBits::near(values, (REACH * slope) as f32);
+    if !signs.is_mixed() {
+        return (near(slope(STEEPER * steepest(values))).map(Box::new), false);
     }
-    let slope = slope(STEEPER);
-    CellRows::near(values, (REACH * slope) as f32).map(|cells| Suspicion::Hidden(Box::new(cells)))
+    if !sampler.may_skip(number, block) {
+        return (None, sampler.is_bored(number, block));
+    }
+    // How steep it is where the surface is seen is seen as well.
+    let steepest = steepest(values);
+    let cells = near(STEEPER * steepest).map(|cells| cells.without_tips(signs)).filter(|cells| !cells.is_empty());
+    let is_bored = sampler.is_bored(number, block) || {
+        // Of gaps that are steeper than all else some are found.
+        let [most, step] = [slope(steepest), lattice.step()].map(|length| length as f32);
+        skips.are_passed((sampler, scratch), Asked { number, most, step }, (signs, values))
+    };
+    (cells.map(Box::new), is_bored)
 }
 
 /// The most that the value changes by from node to node along an axis.
-fn steepest(values: &[f32; NODES]) -> f32 {
-    let most = |stride: usize, is_inner: &dyn Fn(usize) -> bool| {
-        let rises = values.iter().zip(&values[stride..]).enumerate().filter(|(n, _)| is_inner(*n));
-        rises.fold(0.0f32, |most, (_, (low, high))| most.max((high - low).abs()))
-    };
-    let x = most(1, &|n| n % SIDE != SIDE - 1);
-    let y = most(SIDE, &|n| n / SIDE % SIDE != SIDE - 1);
-    x.max(y).max(most(SIDE * SIDE, &|_| true))
+fn steepest(values: &[f32; NODES]) -> f64 {
+    let (rows, _) = values.as_chunks::<SIDE>();
+    // By the place in a row, so that lanes take it.
+    let (mut along, mut across) = ([0.0f32; BLOCK], [0.0f32; SIDE]);
+    for (n, row) in rows.iter().enumerate() {
+        for (i, most) in along.iter_mut().enumerate() {
+            let rise = (row[i + 1] - row[i]).abs();
+            *most = if rise > *most { rise } else { *most };
+        }
+        // At the end of a layer and in the last one there is none above: itself.
+        let next = if n % SIDE == BLOCK { row } else { &rows[n + 1] };
+        let above = rows.get(n + SIDE).unwrap_or(row);
+        for (i, most) in across.iter_mut().enumerate() {
+            let (next, above) = ((next[i] - row[i]).abs(), (above[i] - row[i]).abs());
+            let rise = if next > above { next } else { above };
+            *most = if rise > *most { rise } else { *most };
+        }
+    }
+    along.into_iter().chain(across).fold(0.0, f32::max).into()
 }
 
 /// How many nodes of a block there are between opposite sides, of a gap and of a wall, given the
@@ -127,9 +145,9 @@ pub(super) fn torn_nodes(part: &Part, [positions, normals]: [&[Vec3]; 2], step: 
     counts
 }
 
-/// All directions but none.
+/// All directions, and none.
 fn directions() -> impl Iterator<Item = [i32; 3]> {
-    (0..27).filter(|&n| n != 13).map(|n| [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1])
+    (0..27).map(|n| [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1])
 }
 
 impl Parts<'_> {
@@ -139,6 +157,7 @@ impl Parts<'_> {
         match step.iter().position(|&by| by != 0) {
             Some(axis) if faces == 1 && step[axis] < 0 => self.neighbours.lower(n, axis),
             Some(axis) if faces == 1 => self.neighbours.upper(n, 1 << axis),
+            _ if faces == 0 => Some(n),
             _ => {
                 let mut other = self.blocks[n];
                 for axis in 0..3 {
@@ -154,56 +173,47 @@ impl Parts<'_> {
         let suspects = &self.suspects;
         // Nodes between opposite sides, and all nodes, by their sign.
         let nodes = |n: usize| {
-            let torn = match suspects.binary_search_by_key(&n, |suspect| suspect.number).map(|at| &suspects[at].why) {
-                Ok(&Suspicion::Torn(counts)) => counts,
-                _ => [0; 2],
-            };
-            [torn, self.part(n).signs.counts()]
+            let at = suspects.binary_search_by_key(&n, |suspect| suspect.number);
+            [at.map_or([0; 2], |at| suspects[at].torn), self.part(n).signs.counts()]
         };
         let is_torn = |n: usize, counts: [u32; 2]| {
             let about = || {
-                let blocks = directions().filter_map(|step| self.beside(n, step)).chain([n]).map(nodes);
+                let blocks = directions().filter_map(|step| self.beside(n, step)).map(nodes);
                 blocks.fold([[0; 2]; 2], |sum, of| [0, 1].map(|k| [0, 1].map(|sign| sum[k][sign] + of[k][sign])))
             };
             let is_most =
                 |[torn, all]: [[u32; 2]; 2]| (0..2).any(|sign| counts[sign] > 0 && 2 * torn[sign] > all[sign]);
             counts[0] + counts[1] >= TORN || is_most(about())
         };
-        // The cells of a hidden block that are far from all that is seen.
-        let far = |n: usize, cells: &CellRows| {
+        // The cells of a block that are far from all that is seen in others.
+        let far = |n: usize, cells: &CellBits| {
             let mut left = cells.clone();
-            // Faces first: most blocks need no more, and their neighbours are at hand.
-            let (faces, others): (Vec<_>, Vec<_>) =
-                directions().partition(|step| step.iter().filter(|&&by| by != 0).count() == 1);
-            for step in faces.into_iter().chain(others) {
+            for step in directions().filter(|&step| step != [0; 3]) {
                 if left.is_empty() {
                     break;
                 }
-                if self.beside(n, step).is_some_and(|other| self.part(other).signs.is_mixed()) {
-                    left.clear_near(step);
+                if let Some(other) = self.beside(n, step) {
+                    left = left.without_tips_of(&self.part(other).signs, step);
                 }
             }
             left
         };
         let (mut lost, mut open) = (Vec::new(), Vec::new());
-        for Suspect { number, why } in suspects {
-            match why {
-                Suspicion::Hidden(cells) => {
-                    let left = far(*number, cells);
-                    if !left.is_empty() {
-                        open.push((*number, left));
-                    }
+        for &Suspect { number, ref hidden, torn, is_bored } in suspects {
+            if is_bored || torn != [0; 2] && is_torn(number, torn) {
+                lost.push(number);
+            } else if let Some(cells) = hidden {
+                let left = far(number, cells);
+                if !left.is_empty() {
+                    open.push((number, left));
                 }
-                Suspicion::Torn(counts) if is_torn(*number, *counts) => lost.push(*number),
-                Suspicion::Torn(_) => {}
-                Suspicion::Bored => lost.push(*number),
             }
         }
         // Each has the same share, whatever the order.
         let share = (self.blocks.len() / BLOCKS_PER_INTERVAL + INTERVALS) / open.len().max(1);
         let share = share.max(LEAST);
         let meter = Meter::new(run, open.len());
-        let is_lost = |(number, cells): &(usize, CellRows)| {
+        let is_lost = |(number, cells): &(usize, CellBits)| {
             meter.step()?;
             Ok(sampler.may_hide(*number, self.blocks[*number], cells, share).then_some(*number))
         };
