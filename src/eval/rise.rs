@@ -48,6 +48,9 @@ const FLAT: f64 = 1e-6;
 /// The tangent of 30°.
 const LEAN: f64 = 0.577;
 
+/// Of unit vectors with a smaller product none is within 60° of both.
+const APART: f64 = -0.5;
+
 /// A slope that is less is rounding.
 const LEVEL: f64 = 1e-12;
 
@@ -122,6 +125,15 @@ impl Program {
             (slope.length() > FLAT).then(|| slope.normalize())
         };
         let at = |p: DVec3| self.slopes_at(&parts, p).into_iter().filter_map(within);
+        // Edges that pass beside the middle show at the corners, and what turns round within the
+        // zone: it is not worth a proof.
+        let corner = |x: f64, y: f64| zone.centre + x * zone.axes.x_axis + y * zone.axes.y_axis;
+        let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)];
+        let around: Vec<DVec3> = corners.into_iter().flat_map(at).collect();
+        let are_apart = |a: &DVec3| around.iter().any(|b| a.dot(*b) < APART);
+        if around.iter().any(are_apart) {
+            return self.rise_in_plane(zone, axes);
+        }
         let world = Pieces::one(*zone);
         let zones = self.zones(&world);
         let entered = |way: DVec3| {
@@ -131,11 +143,6 @@ impl Program {
             let ways = [-LEAN, LEAN].map(|lean| Way { middle: middle + lean * across, sway: 0.0 });
             (self.all_enter(&parts, (&zones, &world), &ways) == 3).then_some(middle)
         };
-        // Edges that pass beside the middle show at the corners, and what turns round within the
-        // zone: it is not worth a proof.
-        let corner = |x: f64, y: f64| zone.centre + x * zone.axes.x_axis + y * zone.axes.y_axis;
-        let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)];
-        let around: Vec<DVec3> = corners.into_iter().flat_map(at).collect();
         let middle: Vec<DVec3> = at(zone.centre).collect();
         let of_middle = common(&middle).filter(|way| around.iter().all(|slope| slope.dot(*way) > 0.0));
         let inward = || {

@@ -86,13 +86,13 @@ enum Next {
     Tasks(Vec<Task>),
 }
 
-type Part = HashMap<usize, Found>;
+type Part = HashMap<usize, Found, Spread>;
 
 impl Tree<'_> {
     /// What is found of each plane.
     pub(super) fn found(&self, program: &Program) -> Result<Vec<Found>, Cancelled> {
         let planes = 0..self.sections.len();
-        let (mut first, square) = (Part::new(), self.root.square());
+        let (mut first, square) = (Part::default(), self.root.square());
         let filling = Filling::Program(program.clone());
         for plane in planes.clone() {
             self.note(&mut first, plane, &filling, square.corners());
@@ -131,7 +131,7 @@ impl Tree<'_> {
 
     /// All that comes of a task.
     fn all_of(&self, task: Task) -> Result<Part, Cancelled> {
-        let mut part = Part::new();
+        let mut part = Part::default();
         let mut pending = vec![task];
         while let Some(task) = pending.pop() {
             self.run.check()?;
