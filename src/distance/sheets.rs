@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::column::{Crossings, Line};
 use super::quilt::{KNOWN, Quilt};
 use crate::eval::Region;
-use crate::mesh::{Hidden, Slopes, Subject};
+use crate::mesh::{Hidden, Slopes, Subject, reached};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::{Patch, Patches};
 use rvachev_num::{jobs, order};
@@ -67,9 +67,10 @@ pub(super) fn cover(
         let crossings = Crossings { program: &program, rounding, precision: PRECISE * tolerance };
         let is_sure = *is_sure || subject.has_inner(cell, &program);
         let lines = LINES.into();
-        let found = Cell { crossings, tolerance, bounds: *cell, is_sure, known: &known, lines, run }.sheets();
+        let own = Cell { crossings, tolerance, bounds: *cell, is_sure: is_sure.into(), known: &known, lines, run };
+        let found = own.sheets();
         run.check()?;
-        let is_missed = is_sure && found.is_empty();
+        let is_missed = own.is_sure.get() && found.is_empty();
         Ok((found, is_missed.then_some(*cell)))
     };
     let found = jobs::try_in_order(hidden.len(), |n| of_cell(&hidden[n]))?;
@@ -88,8 +89,8 @@ struct Cell<'a> {
     crossings: Crossings<'a>,
     tolerance: f64,
     bounds: Bounds,
-    /// Whether there is something in it.
-    is_sure: bool,
+    /// Whether there is something in it that is not known: what is known may be all that there is.
+    is_sure: std::cell::Cell<bool>,
     known: &'a Patches,
     /// How many more lines are to be looked at.
     lines: std::cell::Cell<u32>,
@@ -142,7 +143,10 @@ impl Cell<'_> {
         order::falling(&mut axes, |a| slope[*a]);
         let mut found = Vec::new();
         // Beside a rim the slope leads there, and not across the sheet.
-        for axis in axes.into_iter().take(if self.is_sure { 3 } else { 1 }) {
+        for (nth, axis) in axes.into_iter().enumerate() {
+            if nth > 0 && !self.is_sure.get() {
+                break;
+            }
             let size = self.bounds.size();
             let [u, v] = [(axis + 1) % 3, (axis + 2) % 3].map(|side| DVec3::AXES[side] * size[side]);
             let (from, length) =
@@ -162,7 +166,7 @@ impl Cell<'_> {
         let corners = CORNERS.map(|at| self.hits(square, at));
         if corners.iter().chain([&middle]).any(|hits| !hits.points.is_empty()) {
             self.follow(square, (&corners, &middle), depth, found);
-        } else if self.is_sure && depth < SURELY {
+        } else if self.is_sure.get() && depth < SURELY {
             square.quarters().iter().for_each(|quarter| self.look(quarter, depth + 1, found));
         }
     }
@@ -178,6 +182,8 @@ impl Cell<'_> {
             let p = line.at(0.5 * (first + left[same]));
             if !self.known.is_within(p, KNOWN * self.tolerance) {
                 points.push(p);
+            } else if reached(&self.bounds).contains(p) {
+                self.is_sure.set(false);
             }
             left = &left[same + 1..];
         }
@@ -320,6 +326,23 @@ mod tests {
     use crate::Solid;
     use crate::distance::compiled_with;
 
+    /// Once what is known is met, nothing else is sure to be there.
+    #[test]
+    fn what_is_known_is_not_looked_for_again() {
+        let block = Solid::cuboid([4.0, 4.0, 2.0]);
+        let program = compiled_with(&block, &Run::default()).unwrap().surface.clone();
+        let top = [[-2.0, -2.0, 1.0], [2.0, -2.0, 1.0], [2.0, 2.0, 1.0]].map(DVec3::from_array);
+        let known = Patches::new(&[Patch::flat(top)], &Run::default()).unwrap();
+        let run = Run::default();
+        let crossings = Crossings { program: &program, rounding: 1e-9, precision: 1e-6 };
+        // The face is in the cell to within rounding, and no node is outside.
+        let bounds = Bounds::new(DVec3::new(0.5, -0.5, 0.9), DVec3::new(0.6, -0.4, 1.0 - 1e-6));
+        let is_sure = true.into();
+        let cell = Cell { crossings, tolerance: 1e-3, bounds, is_sure, known: &known, lines: LINES.into(), run: &run };
+        assert!(cell.sheets().is_empty());
+        assert!(!cell.is_sure.get() && cell.lines.get() == LINES - 5, "{:?}", cell.lines);
+    }
+
     #[test]
     fn a_cell_is_left_when_its_run_is_cancelled() {
         let sheet = Solid::cuboid([4.0, 4.0, 0.01]).translate([0.0, 0.0, 0.3]);
@@ -328,8 +351,15 @@ mod tests {
         let run = Run::default();
         let crossings = Crossings { program: &program, rounding: 1e-9, precision: 1e-6 };
         let bounds = Bounds::new(DVec3::ZERO, DVec3::ONE);
-        let cell =
-            Cell { crossings, tolerance: 1e-3, bounds, is_sure: true, known: &known, lines: LINES.into(), run: &run };
+        let cell = Cell {
+            crossings,
+            tolerance: 1e-3,
+            bounds,
+            is_sure: true.into(),
+            known: &known,
+            lines: LINES.into(),
+            run: &run,
+        };
         assert!(!cell.sheets().is_empty());
         run.cancel.cancel();
         cell.lines.set(LINES);

@@ -41,7 +41,7 @@ pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 pub use volume::{Volume, VolumeError, VolumeSettings};
 
 pub(crate) use paint::{corner_colors, each_triangle};
-pub(crate) use shown::Hidden;
+pub(crate) use shown::{Hidden, reached};
 pub(crate) use signs::BLOCK;
 pub(crate) use slender::Slender;
 pub(crate) use slopes::{Slope, Slopes};

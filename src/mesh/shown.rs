@@ -3,6 +3,8 @@
 //! Cells whose nodes are on one side, though the surface may be in them, are asked at the nodes of
 //! a finer lattice. Flush faces and acute edges are among them, and have nothing to show.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::DVec3;
 
 use super::blocks::Blocks;
@@ -41,6 +43,11 @@ const ALONG_LEAF: f64 = 2.0;
 pub(crate) struct Hidden {
     pub(crate) cell: Bounds,
     pub(crate) is_sure: bool,
+}
+
+/// Where the surface is found of which a cell is told that it is in it.
+pub(crate) fn reached(cell: &Bounds) -> Bounds {
+    cell.inflate(0.01 * cell.longest_side())
 }
 
 /// What may be beside cells that are looked for.
@@ -109,9 +116,14 @@ impl Subject<'_> {
     /// there.
     fn crossed(&self, blocks: &Blocks, lattice: &Lattice, beside: Beside, run: &Run) -> Result<Vec<Hidden>, Cancelled> {
         let sampler = SolidSampler::new(lattice, blocks, self.bounds, BESIDE);
+        // One that is alone is enough to know that there are some.
+        let is_enough = AtomicBool::new(false);
         let of_block = |scratch: &mut Scratch, number: usize| {
             let block = blocks.cells[number];
             run.check()?;
+            if is_enough.load(Ordering::Relaxed) {
+                return Ok(Vec::new());
+            }
             let slope = blocks.programs.of(number).slope_within(&lattice.region(block, BLOCK));
             // No point of a cell is farther from its nearest node than half of its diagonal.
             let near = 0.867 * lattice.step() * slope;
@@ -135,6 +147,10 @@ impl Subject<'_> {
                 let is_alone = || beside == Beside::All || self.is_alone(&region);
                 if self.is_crossed(&region) && is_alone() {
                     found.push(Hidden { cell: region, is_sure: true });
+                    if beside == Beside::Nothing {
+                        is_enough.store(true, Ordering::Relaxed);
+                        break;
+                    }
                 }
             }
             Ok(found)
@@ -151,7 +167,7 @@ impl Subject<'_> {
     /// Whether steps along the gradient lead from the middle of a cell to the surface in it.
     fn is_crossed(&self, cell: &Bounds) -> bool {
         let step = cell.longest_side();
-        self.foot(cell.center(), step).is_some_and(|foot| cell.inflate(0.01 * step).contains(foot))
+        self.foot(cell.center(), step).is_some_and(|foot| reached(cell).contains(foot))
     }
 
     /// The point of the surface that steps along the gradient lead to, if they do, and beyond it to
