@@ -399,7 +399,7 @@ impl<'a, S: Sampler> Worker<'a, S> {
         let (table, faces) = (CaseTable::get(), ambiguous_faces());
         self.edges.clear();
         let watches = self.sampler.watches();
-        let (mut parts, mut why) = (Vec::with_capacity(blocks.len()), Vec::with_capacity(blocks.len()));
+        let (mut parts, mut suspects) = (Vec::with_capacity(blocks.len()), Vec::new());
         for (number, &block) in (start..).zip(blocks) {
             meter.step()?;
             self.sampler.nodes(&mut self.scratch, number, block, &mut self.values);
@@ -416,12 +416,10 @@ impl<'a, S: Sampler> Worker<'a, S> {
             } else {
                 Vec::new()
             };
-            why.push(if watches {
+            if watches {
                 let means = (&mut self.scratch, &mut self.skips);
-                suspected((self.sampler, self.lattice), means, (number, block), (&signs, &self.values))
-            } else {
-                (None, false)
-            });
+                suspects.push(suspected((self.sampler, self.lattice), means, (number, block), (&signs, &self.values)));
+            }
             parts.push(Part { signs, rows, first, triangles, joins });
         }
         self.roots.clear();
@@ -441,12 +439,10 @@ impl<'a, S: Sampler> Worker<'a, S> {
             }
         }
         let step = self.lattice.step();
-        let of_block = |(n, (part, (hidden, is_bored))): (usize, (&Part, (Option<Box<CellBits>>, bool)))| {
-            let torn = if watches { torn_nodes(part, [&positions, &normals], step) } else { [0; 2] };
-            let is_suspect = hidden.is_some() || is_bored || torn != [0; 2];
-            is_suspect.then_some(Suspect { number: start + n, hidden, torn, is_bored })
-        };
-        let suspects = parts.iter().zip(why).enumerate().filter_map(of_block).collect();
+        for (suspect, part) in suspects.iter_mut().zip(&parts) {
+            suspect.torn = torn_nodes(part, [&positions, &normals], step);
+        }
+        suspects.retain(Suspect::is_one);
         Ok(Batch { parts, positions, normals, clamped, suspects })
     }
 }

@@ -64,23 +64,25 @@ const INTERVALS: usize = 256;
 const LEAST: usize = 640;
 
 /// Which cells of a block may have a surface by its samples, if any, but for what is seen in it and
-/// for tips of that; and whether it is bored.
+/// for tips of that; and whether it is bored. Whether it is torn is seen later.
 pub(super) fn suspected<S: Sampler>(
     (sampler, lattice): (&S, &Lattice),
     (scratch, skips): (&mut S::Scratch, &mut Skips),
     (number, block): (usize, [u32; 3]),
     (signs, values): (&Signs, &[f32; NODES]),
-) -> (Option<Box<CellBits>>, bool) {
+) -> Suspect {
     let slope = |by_samples: f64| {
         let bound = sampler.lipschitz_bound(number, block);
         if bound.is_finite() { bound * lattice.step() } else { by_samples }
     };
     let near = |slope: f64| CellBits::near(values, (REACH * slope) as f32);
+    let none = Suspect { number, hidden: None, torn: [0; 2], is_bored: false };
     if !signs.is_mixed() {
-        return (near(slope(STEEPER * steepest(values))).map(Box::new), false);
+        let hidden = near(slope(STEEPER * steepest(values))).map(Box::new);
+        return Suspect { hidden, ..none };
     }
     if !sampler.may_skip(number, block) {
-        return (None, sampler.is_bored(number, block));
+        return Suspect { is_bored: sampler.is_bored(number, block), ..none };
     }
     // How steep it is where the surface is seen is seen as well.
     let steepest = steepest(values);
@@ -90,7 +92,7 @@ pub(super) fn suspected<S: Sampler>(
         let [most, step] = [slope(steepest), lattice.step()].map(|length| length as f32);
         skips.are_passed((sampler, scratch), Asked { number, most, step }, (signs, values))
     };
-    (cells.map(Box::new), is_bored)
+    Suspect { hidden: cells.map(Box::new), is_bored, ..none }
 }
 
 /// The most that the value changes by from node to node along an axis.

@@ -118,6 +118,13 @@ pub(super) struct Suspect {
     pub(super) is_bored: bool,
 }
 
+impl Suspect {
+    /// Whether there is a reason to look at it again.
+    pub(super) fn is_one(&self) -> bool {
+        self.hidden.is_some() || self.is_bored || self.torn != [0; 2]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
