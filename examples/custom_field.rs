@@ -52,8 +52,20 @@ impl TorusKnot {
         let u = across.mul_add(cos, z * sin);
         let v = z.mul_add(cos, -(across * sin));
         let distance = (u.abs() - self.minor).norm(v, Norm::Euclid);
+        (-distance + self.tube) * self.scale()
+    }
+
+    /// What keeps the value below the distance.
+    fn scale(&self) -> f64 {
         let rise = 0.5 * f64::from(self.turns) * self.reach() / (self.major - self.reach());
-        (-distance + self.tube) * (1.0 / (1.0 + rise * rise).sqrt())
+        1.0 / (1.0 + rise * rise).sqrt()
+    }
+
+    /// At no angle is the value more than that of the torus that the tube winds in: about the axis,
+    /// where the angle may be any, this alone tells that there is nothing.
+    fn most(&self, [x, y, z]: [Interval; 3]) -> f64 {
+        let from_circle = (x.norm(y, Norm::Euclid) - self.major).norm(z, Norm::Euclid);
+        ((-from_circle + self.reach()) * self.scale()).hi()
     }
 
     /// The mean-value form: the value at the centre, and over the box no more than the slopes
@@ -101,14 +113,15 @@ impl Field for TorusKnot {
 
     // Not `convex`, and not `exact`: both stay false.
 
-    /// Tighter than the formula on intervals: by slopes, and with an angle that does not jump
-    /// where the box lies across the negative x axis.
+    /// Tighter than the formula on intervals: by slopes, with an angle that does not jump where the
+    /// box lies across the negative x axis, and no more than the torus has.
     fn range(&self, region: [Interval; 3]) -> Interval {
-        if region[0].hi() < 0.0 && region[1].contains(0.0) {
+        let range = if region[0].hi() < 0.0 && region[1].contains(0.0) {
             self.by_slopes(region, |[x, y, _]| (-y).atan2(-x) + PI)
         } else {
             self.by_slopes(region, |[x, y, _]| y.atan2(x))
-        }
+        };
+        range.narrowed_by(Interval::new(f64::NEG_INFINITY, self.most(region)))
     }
 }
 
