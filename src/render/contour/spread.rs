@@ -1,4 +1,5 @@
-//! Whole numbers as keys of tables: nobody chooses the corners of squares so that they collide.
+//! Whole numbers as keys of tables: nobody chooses planes, or corners of squares, so that they
+//! collide.
 
 use std::hash::{BuildHasherDefault, Hasher};
 
@@ -20,6 +21,10 @@ impl Hasher for Product {
         for byte in bytes {
             self.write_u64(u64::from(*byte));
         }
+    }
+
+    fn write_usize(&mut self, number: usize) {
+        self.write_u64(number as u64);
     }
 
     fn write_u64(&mut self, number: u64) {
