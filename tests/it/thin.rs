@@ -120,6 +120,20 @@ fn what_hides_beside_what_is_seen_is_counted() {
     assert!(hidden > 10 && told == hidden, "{told} of {hidden}");
 }
 
+/// Rods like stars pass between nodes, some of them a cell and a half from others that are seen: their
+/// values rise steeply near their arms alone, whose sides are far from opposite.
+#[test]
+fn rods_beside_others_that_are_seen_are_counted() {
+    let rod = Solid::superellipsoid([0.458_549, 0.617_185, 3.0], 0.582_691, 2.979_119);
+    let rods = rod.translate([-1.0, 0.25, -0.25]).repeat([4, 4, 4], [1.25, 4.0, 5.0]);
+    for (cells, shells, is_told) in [(12, 1, true), (16, 6, true), (20, 7, true), (24, 7, true), (64, 16, false)] {
+        let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
+        let mesh = rods.mesh(&settings).unwrap();
+        assert_eq!(mesh.check().shells, shells, "at {cells} cells");
+        assert_eq!(mesh.possibly_lost() > 0, is_told, "at {cells} cells");
+    }
+}
+
 /// A fin with a draft is thicker below than above: along it the solid is entered once, and it
 /// passes between the nodes.
 #[test]

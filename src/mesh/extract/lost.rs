@@ -21,7 +21,8 @@
 //!    are of this kind. The edge of an acute wedge has such nodes in a line before its others, a
 //!    torn wall, however small, has no others.
 //! 3. *Bored*: a block with a crossing that holds a convex leaf thinner than [`BORE`] cells, or
-//!    whose surface is passed there and back [between nodes](super::skipped).
+//!    whose surface is passed there and back [between nodes](super::skipped), by sides that are
+//!    opposite or far from all that is seen.
 //!
 //! Intervals are budgeted: a block that is not decided in its share of them is counted. So hidden
 //! features are counted if ranges do not tell, and few intervals are taken; the count is the same
@@ -33,8 +34,8 @@
 use glam::Vec3;
 
 use super::parts::Parts;
-use super::skipped::{Asked, Skips};
-use super::suspect::{CellBits, Suspect};
+use super::skipped::{Asked, Passed, Skips};
+use super::suspect::{CellBits, Suspect, TIP};
 use super::{Part, Sampler};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, Signs};
@@ -56,6 +57,10 @@ const OPPOSITE: f32 = -0.8;
 const TORN: u32 = 32;
 /// A convex leaf that is thinner may pass between nodes, in cells.
 pub(in crate::mesh) const BORE: f64 = 1.0;
+/// What is found between nodes so near to a crossing, in cells, may be a tip of what is seen there.
+const NEAR: usize = 1;
+/// So many cells are about three edges at least.
+const ABOUT_EDGES: usize = 9;
 /// For how many blocks there is one narrowing, and how many more there are: intervals are to take
 /// no more than 3 % of the time.
 const BLOCKS_PER_INTERVAL: usize = 12;
@@ -76,7 +81,7 @@ pub(super) fn suspected<S: Sampler>(
         if bound.is_finite() { bound * lattice.step() } else { by_samples }
     };
     let near = |slope: f64| CellBits::near(values, (REACH * slope) as f32);
-    let none = Suspect { number, hidden: None, torn: [0; 2], is_bored: false };
+    let none = Suspect { number, hidden: None, passed: None, torn: [0; 2], is_bored: false };
     if !signs.is_mixed() {
         let hidden = near(slope(STEEPER * steepest(values))).map(Box::new);
         return Suspect { hidden, ..none };
@@ -87,12 +92,15 @@ pub(super) fn suspected<S: Sampler>(
     // How steep it is where the surface is seen is seen as well.
     let steepest = steepest(values);
     let cells = near(STEEPER * steepest).map(|cells| cells.without_tips(signs)).filter(|cells| !cells.is_empty());
-    let is_bored = sampler.is_bored(number, block) || {
-        // Of gaps that are steeper than all else some are found.
-        let [most, step] = [slope(steepest), lattice.step()].map(|length| length as f32);
-        skips.are_passed((sampler, scratch), Asked { number, most, step }, (signs, values))
-    };
-    Suspect { hidden: cells.map(Box::new), is_bored, ..none }
+    let hidden = cells.map(Box::new);
+    if sampler.is_bored(number, block) {
+        return Suspect { hidden, is_bored: true, ..none };
+    }
+    // Of gaps that are steeper than all else some are found.
+    let [most, step] = [slope(steepest), lattice.step()].map(|length| length as f32);
+    let Passed { is_thin, cells } = skips.passed((sampler, scratch), Asked { number, most, step }, (signs, values));
+    let cells = cells.map(|cells| cells.far_from(signs, [0; 3], NEAR)).filter(|cells| !cells.is_empty());
+    Suspect { hidden, passed: cells.map(Box::new), is_bored: is_thin, ..none }
 }
 
 /// The most that the value changes by from node to node along an axis.
@@ -188,24 +196,25 @@ impl Parts<'_> {
             counts[0] + counts[1] >= TORN || is_most(about())
         };
         // The cells of a block that are far from all that is seen in others.
-        let far = |n: usize, cells: &CellBits| {
+        let far = |n: usize, cells: &CellBits, reach: usize| {
             let mut left = cells.clone();
             for step in directions().filter(|&step| step != [0; 3]) {
                 if left.is_empty() {
                     break;
                 }
                 if let Some(other) = self.beside(n, step) {
-                    left = left.without_tips_of(&self.part(other).signs, step);
+                    left = left.far_from(&self.part(other).signs, step, reach);
                 }
             }
             left
         };
         let (mut lost, mut open) = (Vec::new(), Vec::new());
-        for &Suspect { number, ref hidden, torn, is_bored } in suspects {
-            if is_bored || torn != [0; 2] && is_torn(number, torn) {
+        for &Suspect { number, ref hidden, ref passed, torn, is_bored } in suspects {
+            let is_passed = || passed.as_ref().is_some_and(|cells| far(number, cells, NEAR).count() >= ABOUT_EDGES);
+            if is_bored || torn != [0; 2] && is_torn(number, torn) || is_passed() {
                 lost.push(number);
             } else if let Some(cells) = hidden {
-                let left = far(number, cells);
+                let left = far(number, cells, TIP);
                 if !left.is_empty() {
                     open.push((number, left));
                 }

@@ -8,11 +8,13 @@
 //! ```
 //!
 //! The tip of a wedge passes between nodes wherever there is one; so only sides that are all but
-//! parallel count, by the normals of both places where the edge is crossed.
+//! parallel count, by the normals of both places where the edge is crossed. Where nothing is seen
+//! near, it is no tip, whatever its sides.
 
 use glam::Vec3A;
 
 use super::Sampler;
+use super::suspect::CellBits;
 use crate::mesh::feature::Slope;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, Signs};
 
@@ -52,6 +54,19 @@ impl Edge {
         [low, low + STRIDES[usize::from(self.axis)]]
     }
 
+    /// The cells of the block that it is an edge of.
+    fn cells(self) -> impl Iterator<Item = [usize; 3]> {
+        let (low, axis) = (usize::from(self.low), usize::from(self.axis));
+        let node = [low % SIDE, low / SIDE % SIDE, low / (SIDE * SIDE)];
+        let [j, k] = [(axis + 1) % 3, (axis + 2) % 3];
+        [[0, 0], [1, 0], [0, 1], [1, 1]].into_iter().filter_map(move |[by, other]| {
+            let mut cell = node;
+            cell[j] = cell[j].checked_sub(by)?;
+            cell[k] = cell[k].checked_sub(other)?;
+            Some(cell)
+        })
+    }
+
     /// A point of it, in cells from the block's first node.
     #[inline(always)]
     fn point(self, part: f32) -> Vec3A {
@@ -80,17 +95,26 @@ pub(super) struct Asked {
     pub(super) step: f32,
 }
 
+/// What edges of a block that are passed tell.
+#[derive(Default)]
+pub(super) struct Passed {
+    /// Whether sides of some are opposite, as those of a gap or a wall are.
+    pub(super) is_thin: bool,
+    /// The cells about all of them.
+    pub(super) cells: Option<CellBits>,
+}
+
 impl Skips {
-    /// Whether a gap or a wall is passed on some edges of a block.
-    pub(super) fn are_passed<S: Sampler>(
+    /// The edges of a block on which the surface is passed there and back.
+    pub(super) fn passed<S: Sampler>(
         &mut self,
         (sampler, scratch): (&S, &mut S::Scratch),
         asked: Asked,
         (signs, values): (&Signs, &[f32; NODES]),
-    ) -> bool {
+    ) -> Passed {
         self.list(signs, values, asked.most);
         if self.edges.len() < FEW {
-            return false;
+            return Passed::default();
         }
         let side = |edge: Edge| if values[usize::from(edge.low)] > 0.0 { 1.0 } else { -1.0 };
         let is_beyond = |(edge, slope): (Edge, &Slope)| side(edge) * slope.value < 0.0;
@@ -100,7 +124,7 @@ impl Skips {
         self.points.clear();
         self.points.extend(self.edges.iter().map(|edge| edge.point(0.5)));
         if !sampler.values_at_hand(scratch, asked.number, &self.points, &mut self.values) {
-            return false;
+            return Passed::default();
         }
         let bent = self.edges.iter().zip(&self.values).filter(|(edge, value)| {
             let [first, last] = ends(**edge);
@@ -109,7 +133,7 @@ impl Skips {
         });
         let places: Vec<(Edge, f32)> = bent.map(|(edge, _)| (*edge, 0.5)).collect();
         if places.len() < FEW || !self.ask((sampler, scratch), asked.number, &places) {
-            return false;
+            return Passed::default();
         }
         let (mut found, mut rest) = (Vec::new(), Vec::new());
         for (&(edge, part), slope) in places.iter().zip(&self.slopes) {
@@ -125,10 +149,13 @@ impl Skips {
             let is_found = |((edge, _), slope): &(&(Edge, f32), &Slope)| is_beyond((*edge, slope));
             found.extend(rest.iter().zip(&self.slopes).filter(is_found).map(|(place, _)| *place));
         }
-        found.len() >= FEW && {
-            found.truncate(MANY);
-            self.opposite((sampler, scratch), asked.number, &found, is_beyond) >= FEW
+        if found.len() < FEW {
+            return Passed::default();
         }
+        let cells = Some(CellBits::of(found.iter().flat_map(|(edge, _)| edge.cells())));
+        found.truncate(MANY);
+        let is_thin = self.opposite((sampler, scratch), asked.number, &found, is_beyond) >= FEW;
+        Passed { is_thin, cells }
     }
 
     /// On how many of edges, given a place on each that is beyond the surface, both sides are

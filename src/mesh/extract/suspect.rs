@@ -6,7 +6,7 @@ use crate::mesh::signs::{BLOCK, NODES, SIDE, Signs};
 
 /// The farthest that the tip of what is seen goes beyond the cells that the surface crosses, in
 /// cells.
-const TIP: usize = 3;
+pub(super) const TIP: usize = 3;
 
 /// Cells of a block, a bit each: bit `8 j + i` of layer `k`.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,19 @@ impl CellBits {
         let row = (ROW >> (BLOCK - size)) << i;
         let square = (j..j + size).fold(0, |bits, j| bits | row << (BLOCK * j));
         self.0[k..k + size].iter().any(|layer| layer & square != 0)
+    }
+
+    /// Some cells.
+    pub(super) fn of(cells: impl IntoIterator<Item = [usize; 3]>) -> CellBits {
+        let mut all = CellBits([0; BLOCK]);
+        for [i, j, k] in cells {
+            all.0[k] |= 1 << (i + BLOCK * j);
+        }
+        all
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.0.iter().map(|layer| layer.count_ones() as usize).sum()
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -67,15 +80,15 @@ impl CellBits {
         self.but(&tips)
     }
 
-    /// Takes away those that are at most [`TIP`] cells from what the surface crosses in the
-    /// neighbour in a direction, -1, 0 or 1 along each axis.
-    pub(super) fn without_tips_of(&self, signs: &Signs, direction: [i32; 3]) -> CellBits {
+    /// Takes away those that are at most so many cells from what the surface crosses in the block
+    /// itself, or in its neighbour in a direction, -1, 0 or 1 along each axis.
+    pub(super) fn far_from(&self, signs: &Signs, direction: [i32; 3], reach: usize) -> CellBits {
         let near = (0..3).fold(CellBits::crossed(signs), |cells, axis| match direction[axis] {
-            0 => (0..TIP).fold(cells, |cells, _| cells.either(axis, [-1, 1])),
+            0 => (0..reach).fold(cells, |cells, _| cells.either(axis, [-1, 1])),
             // Its last cells are before the first of these.
             step => {
-                let entered = cells.moved(axis, step * (BLOCK - TIP) as i32);
-                (1..TIP).fold(entered, |cells, _| cells.either(axis, [step, 0]))
+                let entered = cells.moved(axis, step * (BLOCK - reach) as i32);
+                (1..reach).fold(entered, |cells, _| cells.either(axis, [step, 0]))
             }
         });
         self.but(&near)
@@ -113,6 +126,8 @@ pub(super) struct Suspect {
     pub(super) number: usize,
     /// Cells without a crossing that may have a surface by their samples.
     pub(super) hidden: Option<Box<CellBits>>,
+    /// Cells about edges on which the surface is passed there and back.
+    pub(super) passed: Option<Box<CellBits>>,
     /// How many nodes are between opposite sides, of a gap and of a wall.
     pub(super) torn: [u32; 2],
     pub(super) is_bored: bool,
@@ -121,7 +136,7 @@ pub(super) struct Suspect {
 impl Suspect {
     /// Whether there is a reason to look at it again.
     pub(super) fn is_one(&self) -> bool {
-        self.hidden.is_some() || self.is_bored || self.torn != [0; 2]
+        self.hidden.is_some() || self.passed.is_some() || self.is_bored || self.torn != [0; 2]
     }
 }
 
@@ -165,9 +180,9 @@ mod tests {
 
     #[test]
     fn what_is_near_a_crossing_of_a_neighbour_is_taken_away() {
-        for (seed, direction) in (0..27).filter(|&n| n != 13).map(|n| (n, [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1])) {
+        for (seed, direction) in (0..27).map(|n| (n, [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1])) {
             let (signs, cells) = (signs(seed as u64), some(seed as u64 + 50, 2));
-            let left = all(&bits(&cells).without_tips_of(&signs, direction));
+            let left = all(&bits(&cells).far_from(&signs, direction, TIP));
             for n in 0..CELLS {
                 let reaches = |m: usize| {
                     let apart = |axis: usize| at(m)[axis] as i32 + BLOCK as i32 * direction[axis] - at(n)[axis] as i32;
