@@ -120,9 +120,12 @@
 //!   smaller radius. The ball rests on the rim of the gap, and a shallow groove is left there.
 //! * An opening takes off what the ball does not get into: walls thinner than its diameter, pins of
 //!   a smaller radius, and parts that hang on these.
-//! * What the ball only just fits into, with less than a thirtieth of its radius to spare, may
-//!   count as what it does not fit into: the channel that is left for its centre is thin beside the
-//!   cells it is measured with.
+//! * What the ball just fits into it gets into: a wall of 1 is left by `rounded(0.5)`, a slot of 1 is
+//!   by `filleted(0.5)`. Where that is measured, the ball is 1.5 thousandths smaller than asked for,
+//!   or three quarters of the tolerance if that is less. Sheets and lines for its centre are measured
+//!   as such, in seconds rather than in tenths of one; beside joints of
+//!   [fillets](crate::Blend::Fillet) what it fits into by less than a thirtieth of its radius may
+//!   count as what it does not fit into.
 //! * Where nothing is left, the solid is empty. That is no error: its [`bounds`](Solid::bounds) are
 //!   [empty](crate::Bounds::is_empty), nothing is in it, its mesh has no triangles.
 //!

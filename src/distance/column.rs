@@ -21,6 +21,9 @@ const CLIMBS: usize = 8;
 /// Shorter parts of a line, relative to where it is, are not halved.
 const SHORTEST: f64 = 1e-15;
 
+/// Nor are those that are shorter than this part of what values may be off.
+const OF_GRAIN: f64 = 0.1;
+
 /// A line along an axis.
 #[derive(Clone, Copy)]
 pub(super) struct Line {
@@ -37,6 +40,8 @@ pub(super) struct Crossings<'a> {
     pub(super) rounding: f64,
     /// How far crossings may be off.
     pub(super) precision: f64,
+    /// How far values may be off; ranges tell nothing of much shorter parts.
+    pub(super) grain: f64,
 }
 
 /// A part of a line, and whether its ends are inside.
@@ -59,7 +64,7 @@ impl Crossings<'_> {
     pub(super) fn of(&self, line: Line) -> Vec<f64> {
         let first = self.program.value(line.at(0.0)) > 0.0;
         let last = self.is_inside(&line, line.length, first);
-        let shortest = SHORTEST * (line.from.abs().max_element() + line.length);
+        let shortest = (SHORTEST * (line.from.abs().max_element() + line.length)).max(OF_GRAIN * self.grain);
         let mut open = vec![Part { ends: [0.0, line.length], inside: [first, last] }];
         let (mut found, mut asked) = (Vec::new(), 0);
         // The lower half is looked at first.

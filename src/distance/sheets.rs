@@ -25,13 +25,13 @@ const ROUNDING: f64 = 1e-9;
 const BEYOND: f64 = 0.75;
 
 /// How often a side of a cell is halved.
-const DEEPEST: u32 = 5;
+const DEEPEST: u32 = 7;
 
 /// And where something is known to be and is not found.
 const SURELY: u32 = 2;
 
 /// Lines through a cell, more or less.
-const LINES: u32 = 80;
+const LINES: u32 = 5000;
 
 /// Crossings are found to this part of the tolerance, and the ends of sheets to this one.
 const PRECISE: f64 = 0.02;
@@ -43,13 +43,14 @@ const ONE: f64 = 0.5;
 /// A triangle and how far it is off.
 type Found = (Patch, f64);
 
-/// Adds to a quilt what is hidden in cells. Gives those that have some left.
+/// Adds to a quilt what is hidden in cells, of a solid whose values may be off by `grain`. Gives those
+/// that have some left.
 pub(super) fn cover(
     quilt: &mut Quilt,
     subject: &Subject<'_>,
     hidden: &[Hidden],
     slopes: &Slopes<'_>,
-    tolerance: f64,
+    [tolerance, grain]: [f64; 2],
     run: &Run,
 ) -> Result<Vec<Bounds>, Cancelled> {
     if hidden.is_empty() {
@@ -64,7 +65,7 @@ pub(super) fn cover(
         let Region::Surface(program) = slopes.program.narrow(&reach) else {
             return Ok((Vec::new(), None));
         };
-        let crossings = Crossings { program: &program, rounding, precision: PRECISE * tolerance };
+        let crossings = Crossings { program: &program, rounding, precision: PRECISE * tolerance, grain };
         let is_sure = *is_sure || subject.has_inner(cell, &program);
         let lines = LINES.into();
         let own = Cell { crossings, tolerance, bounds: *cell, is_sure: is_sure.into(), known: &known, lines, run };
@@ -334,7 +335,7 @@ mod tests {
         let top = [[-2.0, -2.0, 1.0], [2.0, -2.0, 1.0], [2.0, 2.0, 1.0]].map(DVec3::from_array);
         let known = Patches::new(&[Patch::flat(top)], &Run::default()).unwrap();
         let run = Run::default();
-        let crossings = Crossings { program: &program, rounding: 1e-9, precision: 1e-6 };
+        let crossings = Crossings { program: &program, rounding: 1e-9, precision: 1e-6, grain: 0.0 };
         // The face is in the cell to within rounding, and no node is outside.
         let bounds = Bounds::new(DVec3::new(0.5, -0.5, 0.9), DVec3::new(0.6, -0.4, 1.0 - 1e-6));
         let is_sure = true.into();
@@ -349,7 +350,7 @@ mod tests {
         let program = compiled_with(&sheet, &Run::default()).unwrap().surface.clone();
         let known = Patches::new(&[], &Run::default()).unwrap();
         let run = Run::default();
-        let crossings = Crossings { program: &program, rounding: 1e-9, precision: 1e-6 };
+        let crossings = Crossings { program: &program, rounding: 1e-9, precision: 1e-6, grain: 0.0 };
         let bounds = Bounds::new(DVec3::ZERO, DVec3::ONE);
         let cell = Cell {
             crossings,

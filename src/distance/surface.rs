@@ -14,15 +14,12 @@ use super::strips::strips;
 use crate::error::MeshingError;
 use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted};
 use crate::mesh::{Hidden, Slopes, Subject};
+use crate::solid::DEVIATION;
 use crate::{Bounds, Mesh, RFunction, Run, Solid, SolidError};
 use rvachev_field::Patches;
 
 /// The surfaces of solids by their meshes.
 pub(super) struct FromMeshes;
-
-/// Patches are off the surface by this part of the length at most, if nobody has said how far they
-/// may be.
-const TOLERANCE: f64 = 1e-3;
 
 /// They need not be nearer than this part of the size, or of how far the surface is from the
 /// origin.
@@ -92,6 +89,7 @@ impl DistanceSource for FromMeshes {
             return Ok(Surface::new(patches, Accuracy::of_surface(rounding, rounding), flat));
         }
         let tolerance = self.tolerance(programs, wanted);
+        let grain = programs.accuracy.grain();
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
         let enough = CELLS + CELLS_A_LEAF * programs.surface.leaf_count() as f64;
         // Of others, tips and cusps hide something in cells of any size.
@@ -125,6 +123,15 @@ impl DistanceSource for FromMeshes {
                 }
             };
             hidden.retain(|hidden| hidden.cell.intersects(&near));
+            if std::env::var("DBG").is_ok() {
+                eprintln!(
+                    "cell {cell} of {bounds:?} hidden {} sure {} facets {} thick {:?} resigned {is_resigned}",
+                    hidden.len(),
+                    hidden.iter().filter(|h| h.is_sure).count(),
+                    facets.triangles.len(),
+                    subject.thickness(&hidden)
+                );
+            }
             // Two triangles a cell.
             let count = 0.5 * facets.triangles.len() as f64;
             let mut is_last = 4.0 * count > enough || count == 0.0 && cell < NOTHING * longest;
@@ -155,7 +162,15 @@ impl DistanceSource for FromMeshes {
                     is_enough = is_near(&found);
                     // What is hidden is looked for once the rest is as it is to be.
                     if is_enough || is_last {
-                        let mut missed = cover(&mut found.1, &subject, &hidden, &slopes, tolerance, &to_sew)?;
+                        let mut missed = cover(&mut found.1, &subject, &hidden, &slopes, [tolerance, grain], &to_sew)?;
+                        if std::env::var("DBG").is_ok() {
+                            eprintln!(
+                                "   missed {} first {:?} patches {}",
+                                missed.len(),
+                                missed.first(),
+                                found.1.patches.len()
+                            );
+                        }
                         if found.1.patches.is_empty() {
                             missed = hidden.iter().map(|hidden| hidden.cell).collect();
                         }
@@ -174,6 +189,10 @@ impl DistanceSource for FromMeshes {
                     // Cusps are torn in cells of any size: of them the larger ones tell as much.
                     (cell, is_resigned) = (2.0 * first, true);
                 }
+            } else if torn.is_none() && !is_resigned {
+                // Sheets that the smallest cells would not show are torn in all.
+                let smallest = cell * (4.0 * count / most).sqrt();
+                is_resigned = subject.thickness(&hidden).is_some_and(|thickness| 4.0 * thickness < smallest);
             }
             if let Some((reached, mut quilt)) = best.take_if(|_| is_last || is_enough) {
                 let [to_join, to_look] = run.stage(done, 1.0).stages([0.5, 0.5]);
@@ -201,7 +220,7 @@ impl DistanceSource for FromMeshes {
         let least = match wanted.tolerance {
             Some(tolerance) => (tolerance - own).max(FINEST * far),
             // Lengths that are alike have one surface.
-            None => (TOLERANCE * wanted.length).log2().floor().exp2().max(SMALL * far),
+            None => (DEVIATION * wanted.length).log2().floor().exp2().max(SMALL * far),
         };
         least.max(programs.accuracy.grain())
     }

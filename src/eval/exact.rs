@@ -116,8 +116,11 @@ impl Exactness {
     /// Whether it is known before anything is measured that nothing is left of a length's operand
     /// where the length is taken away.
     pub(super) fn is_gone(&self, solid: &Solid) -> bool {
-        let Node::Length { operand, length, .. } = solid.node() else { return false };
-        self.of(operand).deepest <= length.inwards()
+        let Node::Length { operand, length, ball, .. } = solid.node() else { return false };
+        match ball {
+            Some(ball) => self.is_gone(ball),
+            None => self.of(operand).deepest <= length.inwards(),
+        }
     }
 
     fn found(&self, solid: &Solid) -> Exact {

@@ -18,7 +18,7 @@ use super::subject::Subject;
 use crate::eval::Program;
 use crate::geom::Mesh;
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::jobs;
+use rvachev_num::{jobs, order};
 
 /// Cells of a block that the surface is in, as a rule.
 const OF_BLOCK: usize = 110;
@@ -63,7 +63,8 @@ impl Subject<'_> {
     /// The size of cells that show all leaves, `most` at most, as far as these are not more than
     /// enough; `size` is how large the surface is.
     pub(crate) fn first_cell(&self, size: f64, most: f64, enough: f64, run: &Run) -> Result<f64, MeshingError> {
-        let wanted = self.program.thinnest_leaf() / ALONG_LEAF;
+        let thinnest = self.program.thinnest_leaf();
+        let wanted = thinnest / ALONG_LEAF;
         if wanted >= most {
             return Ok(most);
         }
@@ -71,7 +72,10 @@ impl Subject<'_> {
         let bounds = self.bounds.intersection(&Bounds::from_center(self.bounds.center(), DVec3::splat(size)));
         let wanted = wanted.max(most / enough.sqrt());
         let cells = Subject { bounds, ..*self }.cells(CellSize::Length(wanted), run)? as f64;
-        Ok((wanted * (cells / enough).sqrt().max(1.0)).min(most))
+        let shown = wanted * (cells / enough).sqrt().max(1.0);
+        // Where all of it passes between them, larger ones do as well.
+        let is_sheet = shown > thinnest && self.bounds.size().min_element() <= thinnest;
+        Ok(if is_sheet { most } else { shown.min(most) })
     }
 
     /// About how many cells of a size the surface is in.
@@ -174,19 +178,25 @@ impl Subject<'_> {
     /// the other side within a tenth of `step`: where parts meet face to face values are 0, and
     /// inside on both sides.
     pub(super) fn foot(&self, from: DVec3, step: f64) -> Option<DVec3> {
-        const STEPS: usize = 3;
+        const STEPS: usize = 8;
         let size = self.bounds.longest_side();
         let is_inside = self.program.value(from) > 0.0;
-        let (mut p, mut way) = (from, DVec3::ZERO);
+        let mut p = from;
+        let mut last = DVec3::ZERO;
         for _ in 0..STEPS {
             let (value, slope) = self.program.gradient(p);
+            last = if is_inside { -slope } else { slope };
+            if value.abs() <= ROUNDING * size {
+                break;
+            }
             let on = value / slope.length_squared() * slope;
             if !on.is_finite() {
                 return None;
             }
-            way = if is_inside { -slope } else { slope }.normalize_or_zero();
             p -= on;
         }
+        // All steps together lead beyond an edge as well, where the last one goes along a face.
+        let way = (p - from).try_normalize().unwrap_or(last.normalize_or_zero());
         let is_beyond = |part: f64| {
             let value = self.program.value(p + part * step * way);
             value.abs() > ROUNDING * size && (value > 0.0) != is_inside
@@ -194,6 +204,27 @@ impl Subject<'_> {
         // One of the tenths of tenths is within what is thicker than rounding errors.
         let mut parts = (2..).map(|tenths| 0.1_f64.powi(tenths)).take_while(|part| part * step > ROUNDING * size);
         (self.program.value(p).abs() < 0.01 * step && parts.any(is_beyond)).then_some(p)
+    }
+
+    /// About how thick what is hidden in cells is, to within twice: half of it is thinner.
+    pub(crate) fn thickness(&self, hidden: &[Hidden]) -> Option<f64> {
+        const SOME: usize = 32;
+        let least = ROUNDING * self.bounds.longest_side();
+        let of_cell = |Hidden { cell, .. }: &Hidden| {
+            let (from, step) = (cell.center(), cell.longest_side());
+            let foot = self.foot(from, step)?;
+            let way = (foot - from).normalize_or_zero();
+            let is_inside = self.program.value(from) > 0.0;
+            let is_beyond = |by: &f64| {
+                let value = self.program.value(foot + *by * way);
+                value.abs() > least && (value > 0.0) != is_inside
+            };
+            (0..).map(|halvings| 0.5f64.powi(halvings) * step).take_while(|by| *by > least).find(is_beyond)
+        };
+        let some = hidden.iter().step_by(hidden.len().div_ceil(SOME).max(1));
+        let mut all: Vec<f64> = some.filter_map(of_cell).collect();
+        order::rising(&mut all, |thickness| *thickness);
+        all.get(all.len() / 2).copied()
     }
 
     /// Whether a cell with all its nodes on one side has something of the other.

@@ -1,5 +1,7 @@
 //! Levels, offsets and shells.
 
+use glam::DAffine3;
+
 use super::{Length, Node, Solid};
 use crate::Blend;
 
@@ -97,7 +99,9 @@ impl Solid {
     }
 
     /// The solid with its convex edges rounded: what balls of this radius fill that are inside of
-    /// it (its opening by the ball). What is thinner than the ball is gone.
+    /// it (its opening by the ball). What is thinner than the ball is gone, a wall just as thick is
+    /// left: where the rounding is measured, its ball is 1.5 thousandths smaller than asked for, or
+    /// three quarters of the [tolerance](Solid::with_tolerance) if that is less.
     ///
     #[doc = picture!("rounded" = "docs/gallery/rounded.png")]
     ///
@@ -124,7 +128,7 @@ impl Solid {
 
     /// The solid with its concave edges filled: all that balls of this radius do not reach from
     /// outside (its closing by the ball). Gaps and holes that the ball does not fit into are
-    /// filled.
+    /// filled, one just as wide is left: the ball is as that of [`rounded`](Solid::rounded).
     ///
     #[doc = picture!("filleted" = "docs/gallery/filleted.png")]
     ///
@@ -149,16 +153,41 @@ impl Solid {
     }
 }
 
+/// Surfaces that lengths are measured from are off by this part of them at most, if nobody has said how
+/// far they may be.
+pub(crate) const DEVIATION: f64 = 1e-3;
+
 /// A length of an operand, measured to a tolerance if one is given.
 pub(super) fn node(operand: &Solid, length: Length, tolerance: Option<f64>) -> Node {
     let ball = match length {
         // It is said of the length itself.
         _ if length.check().is_err() => None,
-        Length::Rounded(radius) => Some(ball(operand, -radius, tolerance, None)),
-        Length::Filleted(radius) => Some(ball(operand, radius, tolerance, None)),
+        Length::Rounded(radius) => Some(ball(operand, -rolling(operand, radius, tolerance), tolerance, None)),
+        Length::Filleted(radius) => Some(ball(operand, rolling(operand, radius, tolerance), tolerance, None)),
         _ => None,
     };
     Node::Length { operand: operand.clone(), length, tolerance, ball, about: None }
+}
+
+/// The radius of the ball that rounds a solid: smaller than asked for by half as much again as the
+/// solid's surface may be off. Where a wall or a gap is just as wide as the ball, its centre has a thin
+/// sheet to roll on, and neither one without an inside nor a torn one. Profiles have their lines and
+/// arcs.
+fn rolling(operand: &Solid, radius: f64, tolerance: Option<f64>) -> f64 {
+    let off = (DEVIATION * radius).min(0.5 * tolerance.unwrap_or(f64::INFINITY));
+    if is_column(operand) { radius } else { radius - 1.5 * off }
+}
+
+/// Whether all leaves of a solid go on along z, as those of profiles do.
+fn is_column(solid: &Solid) -> bool {
+    let mut pending = vec![solid];
+    while let Some(solid) = pending.pop() {
+        match solid.node() {
+            Node::Leaf(field) if field.bounds_under(&DAffine3::IDENTITY).size().z.is_finite() => return false,
+            node => pending.extend(node.parts()),
+        }
+    }
+    true
 }
 
 /// Where the centre of a ball may be that rolls along a solid. It is measured from in its turn:

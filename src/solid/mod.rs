@@ -33,6 +33,7 @@ pub use error::SolidError;
 pub(crate) use error::Trail;
 pub use form::{DeformationForm, Form, LeafForm};
 pub use from_mesh::MeshSolid;
+pub(crate) use length::DEVIATION;
 pub(crate) use node::Node;
 pub use node::{Length, Operation, Solid};
 pub use paint::Paint;

@@ -847,3 +847,29 @@ fn large_operands_are_measured_where_they_are_cut() -> Outcome {
     }
     Ok(())
 }
+
+/// Walls and gaps that are just as wide as the ball are there still: its centre rolls on a sheet, a line
+/// or a point of them.
+#[test]
+fn what_is_as_wide_as_the_ball_is_left() {
+    let plate = Solid::cuboid([4.0, 3.0, 1.0]);
+    let without = |solid: &Solid, tool: Solid| solid.difference(tool, RFunction::MIN_MAX);
+    let l = &plate | Solid::cuboid([1.0, 3.0, 3.0]).translate([-1.5, 0.0, 1.0]);
+    let bored = without(&plate, Solid::cylinder(0.6, 3.0));
+    let tube = without(&Solid::cylinder(2.0, 5.0), Solid::cylinder(1.0, 6.0));
+    let cross = Solid::cuboid([1.0, 1.0, 4.0]) | Solid::cuboid([4.0, 1.0, 1.0]);
+    let slotted = without(&Solid::cuboid([4.0, 3.0, 2.0]), Solid::cuboid([1.0, 4.0, 2.0]).translate([0.0, 0.0, 0.6]));
+    let rounded = [
+        (&l, vec![[1.0, 0.2, 0.3], [-1.4, 0.3, 1.4]], vec![[1.97, 0.0, 0.3], [-1.8, 0.0, 2.45]]),
+        (&bored, vec![[1.3, 0.2, 0.3], [-1.3, -0.8, -0.4]], vec![[1.95, 0.0, 0.3], [0.62, 0.0, 0.4]]),
+        (&tube, vec![[1.5, 0.2, 0.3], [0.0, -1.2, 2.1]], vec![[1.95, 0.0, 2.3], [1.05, 0.0, -2.3]]),
+        (&cross, vec![[1.0, 0.0, 0.3], [0.2, 0.2, -1.2]], vec![[1.0, 0.45, 0.45], [0.45, 0.45, 1.0]]),
+    ];
+    for (n, (solid, inside, outside)) in rounded.into_iter().enumerate() {
+        let rounded = solid.rounded(0.5);
+        assert!(inside.iter().all(|p| rounded.contains(*p).unwrap()), "{n}");
+        assert!(!outside.iter().any(|p| rounded.contains(*p).unwrap()), "{n}");
+    }
+    let filled = slotted.filleted(0.5);
+    assert!(!filled.contains([0.0, 0.0, 0.2]).unwrap() && filled.contains([0.45, 0.0, -0.38]).unwrap());
+}

@@ -78,6 +78,7 @@ impl Compiler<'_> {
         let margin = margin(site.solid, &measured, radius);
         let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
         let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
+            let radius = rolling(site.solid).unwrap_or(radius);
             let whole = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds());
             // What is taken away goes on beyond the surface: values are 0 where the new one is, and
             // nowhere else.
@@ -139,6 +140,14 @@ impl Compiler<'_> {
         let all: Vec<Built> = [join].into_iter().chain(fills.iter().copied()).collect();
         let operation = if operation == Operation::Union { operation } else { Operation::Difference };
         self.code.operation(operation, Rule::MinMax, frame, &all)
+    }
+}
+
+/// The radius of the ball that rolls along a solid.
+fn rolling(solid: &Solid) -> Option<f64> {
+    match solid.node().ball()?.node() {
+        solid::Node::Length { length, .. } => Some(length.amount().abs()),
+        _ => None,
     }
 }
 
