@@ -70,7 +70,7 @@ fn what_operands_know_is_not_measured() {
     let solid = &plate - hole.translate([4.0, 0.0, 0.0]);
     for made in [solid.shell(1.0), solid.offset(-1.0), solid.rounded(1.0), solid.named("part").offset(-1.0)] {
         let accuracy = compiled(&made).unwrap().accuracy;
-        assert!(accuracy.error < 2e-3, "{made}: {accuracy:?}");
+        assert!(accuracy.error < 4e-3, "{made}: {accuracy:?}");
     }
     let known = compiled(&solid.offset(-1.0)).unwrap().accuracy;
     let all = compiled(&solid.offset(1.0)).unwrap().accuracy;
