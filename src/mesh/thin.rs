@@ -32,6 +32,10 @@ const FARTHEST: f64 = 2.0;
 /// them.
 const NEARER: f64 = 0.8;
 const POWERS: i32 = 72;
+/// What is narrower is rounding, in cells.
+const ROUNDING: f64 = 1e-6;
+/// The cosine from which on the normals of two sides are opposite.
+const OPPOSITE: f64 = -0.7;
 /// Halvings that find a change of sign.
 const HALVINGS: usize = 40;
 /// Cells that are looked at before it is asked whether to go on.
@@ -78,7 +82,8 @@ pub(super) fn thin_report(
         let thin = |within: &[usize; 3]| {
             let cell = std::array::from_fn(|axis| found.block[axis] + within[axis] as u32);
             let is_mixed = !hidden.contains(within);
-            let counts = !is_mixed || gap(program, &lattice.region(cell, 1), lattice.step()).is_some();
+            let is_enough = !is_mixed && !program.is_gentle();
+            let counts = is_enough || gap(program, &lattice.region(cell, 1), lattice.step()).is_some();
             counts.then_some(Thin { cell, is_mixed, program })
         };
         Ok(found.cells.iter().filter_map(thin).collect::<Vec<_>>())
@@ -178,6 +183,12 @@ fn gap(program: &Program, cell: &Bounds, step: f64) -> Option<(DVec3, f64)> {
             crossings.push(0.5 * (low + high));
         }
     }
-    let gaps = crossings.windows(2).map(|two| (p + normal * (0.5 * (two[0] + two[1])), two[1] - two[0]));
-    gaps.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, width)| *width < 1.74 * step)
+    // The sides of an edge are not opposite, and where faces meet there is a gap by rounding.
+    let is_gap = |two: &&[f64]| {
+        let [from, to] = [two[0], two[1]].map(|t| program.gradient(p + normal * t).1.normalize_or_zero());
+        (ROUNDING * step..1.74 * step).contains(&(two[1] - two[0])) && from.dot(to) < OPPOSITE
+    };
+    let gaps = crossings.windows(2).filter(is_gap);
+    let gaps = gaps.map(|two| (p + normal * (0.5 * (two[0] + two[1])), two[1] - two[0]));
+    gaps.min_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use glam::{DQuat, DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, CancelToken, Cancelled, CellSize, Features, Helix, MeshSettings, MinimalSurface, Polygon, Profile,
-    Run, SheetLattice, Solid, ThinFeatures, ThinReport, deg, error::MeshingError, rad,
+    Blend, Bounds, CancelToken, Cancelled, CellSize, Features, Helix, MeshSettings, MeshSolid, MinimalSurface, Polygon,
+    Profile, Run, SheetLattice, Solid, ThinFeatures, ThinReport, deg, error::MeshingError, rad,
 };
 
 use super::models;
@@ -199,6 +199,31 @@ fn bodies_without_thin_parts_have_no_unresolved_cells() {
         let mesh = solid.mesh(&settings).unwrap();
         let count = solid.thin_features(&settings, &Run::default()).unwrap().cells;
         assert!(60 * count < mesh.triangles().len(), "{name}: {count} of {} triangles", mesh.triangles().len());
+    }
+}
+
+/// Edges of imported parts hide nothing, and what is thin about them is found as that of others is.
+#[test]
+fn imported_parts_have_thin_places_where_others_have() {
+    let block = Solid::cuboid([10.0, 8.0, 6.0]);
+    let bored = &block - Solid::cylinder(2.0, 10.0);
+    let fin = &block | Solid::cuboid([0.1, 6.0, 4.0]).translate([0.03, 0.0, 4.0]);
+    let slot = &block - Solid::cuboid([0.1, 12.0, 4.0]).translate([0.03, 0.0, 2.0]);
+    for (name, solid, is_thin) in [
+        ("block", block.clone(), false),
+        ("turned block", block.rotate_x(deg(20.0)).rotate_z(deg(33.0)), false),
+        ("bored block", bored, false),
+        ("fin", fin.clone(), true),
+        ("turned fin", fin.rotate_x(deg(20.0)).rotate_z(deg(33.0)), true),
+        ("slot", slot, true),
+    ] {
+        let fine = MeshSettings { cell: CellSize::Tolerance(0.01), ..MeshSettings::default() };
+        let import = Solid::from_mesh(&solid.mesh(&fine).unwrap(), MeshSolid::default());
+        let settings = MeshSettings { cell: CellSize::LongestSide(20), ..MeshSettings::default() };
+        let report = import.thin_features(&settings, &Run::default()).unwrap();
+        assert_eq!(report.count > 0, is_thin, "{name}: {report:?}");
+        let thickness = report.places.iter().filter_map(|place| place.thickness).reduce(f64::min);
+        assert!(!is_thin || (thickness.unwrap() - 0.1).abs() < 1e-3, "{name}: {report:?}");
     }
 }
 
