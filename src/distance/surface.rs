@@ -123,15 +123,6 @@ impl DistanceSource for FromMeshes {
                 }
             };
             hidden.retain(|hidden| hidden.cell.intersects(&near));
-            if std::env::var("DBG").is_ok() {
-                eprintln!(
-                    "cell {cell} of {bounds:?} hidden {} sure {} facets {} thick {:?} resigned {is_resigned}",
-                    hidden.len(),
-                    hidden.iter().filter(|h| h.is_sure).count(),
-                    facets.triangles.len(),
-                    subject.thickness(&hidden)
-                );
-            }
             // Two triangles a cell.
             let count = 0.5 * facets.triangles.len() as f64;
             let mut is_last = 4.0 * count > enough || count == 0.0 && cell < NOTHING * longest;
@@ -163,14 +154,6 @@ impl DistanceSource for FromMeshes {
                     // What is hidden is looked for once the rest is as it is to be.
                     if is_enough || is_last {
                         let mut missed = cover(&mut found.1, &subject, &hidden, &slopes, [tolerance, grain], &to_sew)?;
-                        if std::env::var("DBG").is_ok() {
-                            eprintln!(
-                                "   missed {} first {:?} patches {}",
-                                missed.len(),
-                                missed.first(),
-                                found.1.patches.len()
-                            );
-                        }
                         if found.1.patches.is_empty() {
                             missed = hidden.iter().map(|hidden| hidden.cell).collect();
                         }
