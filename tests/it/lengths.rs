@@ -849,27 +849,52 @@ fn large_operands_are_measured_where_they_are_cut() -> Outcome {
 }
 
 /// Walls and gaps that are just as wide as the ball are there still: its centre rolls on a sheet, a line
-/// or a point of them.
+/// or a curved one of them, to whose rims the rounding follows.
 #[test]
 fn what_is_as_wide_as_the_ball_is_left() {
-    let plate = Solid::cuboid([4.0, 3.0, 1.0]);
     let without = |solid: &Solid, tool: Solid| solid.difference(tool, RFunction::MIN_MAX);
-    let l = &plate | Solid::cuboid([1.0, 3.0, 3.0]).translate([-1.5, 0.0, 1.0]);
-    let bored = without(&plate, Solid::cylinder(0.6, 3.0));
+    let plate = Solid::cuboid([4.0, 3.0, 1.0]);
+    let bored = without(&Solid::cuboid([4.0, 4.0, 1.0]), Solid::cylinder(0.6, 3.0));
     let tube = without(&Solid::cylinder(2.0, 5.0), Solid::cylinder(1.0, 6.0));
     let cross = Solid::cuboid([1.0, 1.0, 4.0]) | Solid::cuboid([4.0, 1.0, 1.0]);
-    let slotted = without(&Solid::cuboid([4.0, 3.0, 2.0]), Solid::cuboid([1.0, 4.0, 2.0]).translate([0.0, 0.0, 0.6]));
-    let rounded = [
-        (&l, vec![[1.0, 0.2, 0.3], [-1.4, 0.3, 1.4]], vec![[1.97, 0.0, 0.3], [-1.8, 0.0, 2.45]]),
-        (&bored, vec![[1.3, 0.2, 0.3], [-1.3, -0.8, -0.4]], vec![[1.95, 0.0, 0.3], [0.62, 0.0, 0.4]]),
-        (&tube, vec![[1.5, 0.2, 0.3], [0.0, -1.2, 2.1]], vec![[1.95, 0.0, 2.3], [1.05, 0.0, -2.3]]),
-        (&cross, vec![[1.0, 0.0, 0.3], [0.2, 0.2, -1.2]], vec![[1.0, 0.45, 0.45], [0.45, 0.45, 1.0]]),
-    ];
-    for (n, (solid, inside, outside)) in rounded.into_iter().enumerate() {
-        let rounded = solid.rounded(0.5);
-        assert!(inside.iter().all(|p| rounded.contains(*p).unwrap()), "{n}");
-        assert!(!outside.iter().any(|p| rounded.contains(*p).unwrap()), "{n}");
-    }
-    let filled = slotted.filleted(0.5);
+    // The nearest places for the ball's centre.
+    let on_plate = |p: DVec3| {
+        let flat = DVec3::new(p.x.clamp(-1.5, 1.5), p.y.clamp(-1.5, 1.5), 0.0);
+        let radius = flat.truncate().length();
+        if radius < 1.1 { (1.1 / radius * flat.truncate()).extend(0.0) } else { flat }
+    };
+    let on_tube = |p: DVec3| (1.5 * p.truncate().normalize()).extend(p.z.clamp(-2.0, 2.0));
+    let on_cross = |p: DVec3| {
+        let [x, z] = [DVec3::X * p.x.clamp(-1.5, 1.5), DVec3::Z * p.z.clamp(-1.5, 1.5)];
+        if p.distance(x) < p.distance(z) { x } else { z }
+    };
+    check_balls("bored plate", &bored, on_plate);
+    check_balls("tube", &tube, on_tube);
+    check_balls("cross", &cross, on_cross);
+    let l = (&plate | Solid::cuboid([1.0, 3.0, 3.0]).translate([-1.5, 0.0, 1.0])).rounded(0.5);
+    assert!([[1.0, 0.2, 0.3], [-1.4, 0.3, 1.4]].iter().all(|p| l.contains(*p).unwrap()));
+    assert!(![[1.97, 0.0, 0.3], [-1.8, 0.0, 2.45]].iter().any(|p| l.contains(*p).unwrap()));
+    let slot = Solid::cuboid([1.0, 4.0, 2.0]).translate([0.0, 0.0, 0.6]);
+    let filled = without(&Solid::cuboid([4.0, 3.0, 2.0]), slot).filleted(0.5);
     assert!(!filled.contains([0.0, 0.0, 0.2]).unwrap() && filled.contains([0.45, 0.0, -0.38]).unwrap());
+}
+
+/// That a solid rounded by .5 ends where balls about the nearest places for their centres do.
+fn check_balls(name: &str, solid: &Solid, nearest: impl Fn(DVec3) -> DVec3) {
+    /// How far off it may be.
+    const OFF: f64 = 3e-3;
+    let rounded = solid.rounded(0.5);
+    let mut random = Random::new(35);
+    for _ in 0..4000 {
+        let reach = solid.finite_bounds().unwrap().half_extents();
+        let at = DVec3::new(random.unit(), random.unit(), random.unit()) * 2.0 - 1.0;
+        let centre = nearest(reach * at);
+        let away = random.direction();
+        for (by, is_inside) in [(0.5 - OFF, true), (0.5 + OFF, false)] {
+            let p = centre + by * away;
+            let is_right = rounded.contains(p).unwrap() == is_inside;
+            // Other centres may be nearer.
+            assert!(is_right || !is_inside && p.distance(nearest(p)) < by - 1e-9, "{name} at {p}, {by} from {centre}");
+        }
+    }
 }
