@@ -882,7 +882,7 @@ fn what_is_as_wide_as_the_ball_is_left() {
 /// That a solid rounded by .5 ends where balls about the nearest places for their centres do.
 fn check_balls(name: &str, solid: &Solid, nearest: impl Fn(DVec3) -> DVec3) {
     /// How far off it may be.
-    const OFF: f64 = 3e-3;
+    const OFF: f64 = 2e-3;
     let rounded = solid.rounded(0.5);
     let mut random = Random::new(35);
     for _ in 0..4000 {
