@@ -170,13 +170,14 @@ impl Fill {
         self.held.iter().map(of_box).fold(point(f64::NEG_INFINITY), Interval::max)
     }
 
-    /// The directions that lead away from the sides of the hull, as far as these are near.
-    fn off_hull(&self, zone: &Zone, ways: &[Way]) -> u8 {
+    /// The directions that lead away from the sides of the hull, as far as these are near: nearer
+    /// than this.
+    fn off_hull(&self, zone: &Zone, height: f64, ways: &[Way]) -> u8 {
         let mut all = u8::MAX;
         for (axis, side) in zone.hull().into_iter().enumerate() {
             let is_near = [side.lo() - self.hull.min[axis], self.hull.max[axis] - side.hi()];
             for (room, way) in is_near.into_iter().zip([1.0, -1.0]) {
-                if room < MOST * self.radius {
+                if room < height {
                     let mut slopes = [Interval::point(0.0); 3];
                     slopes[axis] = Interval::point(way);
                     all &= bits(ways, |way| way.is_rise(slopes));
@@ -295,11 +296,28 @@ impl AnyField for Fill {
         if !self.boxes.iter().any(|bounds| bounds.inflate(MOST * self.radius).contains_bounds(&hull)) {
             return 0;
         }
-        let turned = |sign: f64| -> Vec<Way> { ways.iter().map(|way| way.flip_if(sign < 0.0)).collect() };
-        let near = self.sides.iter().filter(|side| meets(zone, &side.bounds)).map(|side| &side.distance);
-        let by_sides = near.map(|side| side.field.rises(zone, &turned(-side.sign)));
-        let by_ball = self.ball.field.rises(zone, &turned(self.ball.sign));
-        by_sides.fold(by_ball & self.off_hull(zone, ways), |all, own| all & own)
+        let turned = |sign: f64, fade: f64| -> Vec<Way> {
+            let own = ways.iter().map(|way| Way { sway: way.sway + fade * way.middle.length(), ..*way });
+            own.map(|way| way.flip_if(sign < 0.0)).collect()
+        };
+        // The more of the two nearest operands may become farther, the faster the ball is to.
+        let (mut by_sides, mut but_one) = (u8::MAX, u8::MAX);
+        for side in self.sides.iter().filter(|side| meets(zone, &side.bounds)) {
+            let own = side.distance.field.rises(zone, &turned(-side.distance.sign, 0.0));
+            (by_sides, but_one) = (by_sides & own, but_one & own | by_sides & !own);
+        }
+        let ball = |fade: f64| self.ball.field.rises(zone, &turned(self.ball.sign, fade));
+        let mut found = by_sides & ball(0.0);
+        let highest = self.ball.range(zone).hi() - self.radius;
+        // Beyond the most that counts of the ball only operands do.
+        if highest < MOST * self.radius {
+            found |= but_one & ball(FADE) | ball(2.0 * FADE);
+        }
+        found & self.off_hull(zone, highest.min(MOST * self.radius), ways)
+    }
+
+    fn inward(&self, zone: &Zone) -> Option<DVec3> {
+        Some(self.ball.sign * self.ball.field.inward(zone)?)
     }
 
     /// Where it does not fade away from operands, its surface is where the ball is as far as its

@@ -118,7 +118,7 @@ impl Program {
     /// A unit vector within a plane, of these axes, such that along all directions within 30° of it
     /// the solid is entered, and not left, throughout a zone.
     pub(crate) fn way_in_plane(&self, zone: &Zone, axes: [DVec3; 2]) -> Option<DVec3> {
-        let parts = self.parts()?;
+        let Some(parts) = self.parts() else { return self.rise_in_plane(zone, axes) };
         // A face that lies beside the plane has no slope in it, and tells nothing there.
         let within = |slope: DVec3| {
             let slope = axes.map(|axis| slope.dot(axis) * axis).into_iter().sum::<DVec3>();
@@ -422,6 +422,10 @@ mod tests {
             cube.union_with(&rod, Blend::Chamfer { leg: 0.15 }),
             cushion.offset(0.05),
             cube.shell(0.1),
+            cube.union_with(&rod, Blend::Fillet { radius: 0.15 }),
+            cushion.translate(DVec3::X * 0.3).union_with(&cube, Blend::Fillet { radius: 0.15 }),
+            cushion.union_with(&rod, Blend::Chamfer { leg: 0.15 }),
+            (&cube | &rod).filleted(0.1).rounded(0.05),
         ];
         let mut state = 5u64;
         let mut random = move || {

@@ -4,11 +4,13 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Blend, CancelToken, ContourSettings, Contours, Plane, PlaneBounds, Polyline, Profile, RFunction, Run, Side,
-    SliceSettings, Solid,
+    Blend, Bounds, CancelToken, ContourSettings, Contours, ParamError, Plane, PlaneBounds, Polyline, Profile,
+    RFunction, Run, Side, SliceSettings, Solid,
     error::RenderError,
+    field::{Field, Norm, Real},
     io::{write_dxf, write_svg},
     layers::Isolines,
+    rad,
 };
 
 use crate::golden::{ascii, same_as_golden};
@@ -282,6 +284,73 @@ fn slices_of_lengths_have_all_contours() {
     let contours = cut(&shell, 0.5, 1e-2);
     assert_eq!(contours.outlines().len(), 1);
     assert_eq!(contours.len(), 2);
+}
+
+/// Ranges tell all of the contour, samples nothing: these would count.
+#[test]
+fn contours_of_lengths_and_blends_are_told_by_ranges() {
+    let block = Solid::cuboid([20.0, 14.0, 8.0]) | Solid::cylinder(5.0, 14.0);
+    let cushion = Solid::superellipsoid([30.0, 20.0, 10.0], 0.3, 0.4);
+    let plate = Solid::cuboid([2.0, 2.0, 0.4]);
+    let (post, round) = (Solid::cylinder(0.5, 2.0), Solid::superellipsoid([0.5, 0.5, 1.0], 0.3, 0.7));
+    let (fillet, chamfer) = (Blend::Fillet { radius: 0.15 }, Blend::Chamfer { leg: 0.15 });
+    let holes = Solid::cylinder(0.3, 4.0).repeat([4, 3, 1], [1.5, 1.5, 1.0]);
+    let circle = |radius: f64| PI * radius * radius;
+    // The surface of the fillet at .25: .1 below the ball's centre, .65 from the axis.
+    let of_fillet = circle(0.65 - (0.15f64.powi(2) - 0.1f64.powi(2)).sqrt());
+    let rows: [(Solid, f64, f64, Option<f64>); 12] = [
+        (block.shell(1.0), 0.5, 1e-3, Some(280.0 - 18.0 * 12.0)),
+        (block.offset(1.0), 0.5, 1e-3, Some(22.0 * 16.0 - 4.0 + PI)),
+        (block.rounded(1.0), 0.5, 1e-3, Some(280.0 - 4.0 + PI)),
+        (block.filleted(1.0), 0.5, 1e-3, Some(280.0)),
+        (cushion.shell(1.0), 0.1, 1e-3, None),
+        (cushion.rounded(1.0), 0.1, 1e-3, None),
+        (cushion.twist(rad(0.02)).shell(1.0), 0.1, 1e-3, None),
+        ((Solid::cuboid([8.0, 6.0, 2.0]) - holes).offset(0.1), 0.5, 1e-3, None),
+        (plate.union_with(&post, fillet), 0.25, 1e-4, Some(of_fillet)),
+        (plate.union_with(&round, fillet), 0.25, 1e-4, None),
+        (plate.union_with(&round, chamfer), 0.25, 1e-4, None),
+        (Solid::sphere(1.0).union_with(cushion.scale(0.05), Blend::Ricci { p: 4.0 }), 0.05, 1e-3, None),
+    ];
+    for (number, (solid, height, tolerance, area)) in rows.iter().enumerate() {
+        let contours = cut(solid, *height, *tolerance);
+        assert_eq!(contours.unresolved(), 0, "row {number}: {} lines", contours.len());
+        let area = area.unwrap_or(contours.area());
+        let length: f64 = contours.iter().map(Polyline::length).sum();
+        let off = tolerance + solid.accuracy().unwrap().error;
+        assert!((contours.area() - area).abs() < off * length, "row {number}: {} {area}", contours.area());
+    }
+}
+
+/// A ball whose slopes no range tells.
+#[derive(Debug)]
+struct Rough;
+
+impl Field for Rough {
+    fn name(&self) -> &'static str {
+        "rough"
+    }
+    fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+        // The root of a difference of all but equal numbers has any slope, as far as ranges tell.
+        -x.norm(y, Norm::Euclid).norm(z, Norm::Euclid) + 1.0 + (x * x - x * x * (1.0 + 1e-12)).abs().sqrt() * 0.01
+    }
+    fn bounds(&self) -> Bounds {
+        Bounds::from_center(DVec3::ZERO, DVec3::splat(1.0))
+    }
+    fn check(&self) -> Result<(), ParamError> {
+        Ok(())
+    }
+    fn convex(&self) -> bool {
+        false
+    }
+}
+
+#[test]
+fn what_only_samples_show_is_told() {
+    let contours = cut(&Solid::new(Rough), 0.3, 1e-3);
+    assert_eq!(contours.len(), 1);
+    assert!((contours.area() - PI * 0.91).abs() < 1e-2, "{}", contours.area());
+    assert!(contours.unresolved() > 100, "{}", contours.unresolved());
 }
 
 /// Whether a point is within contours, by the even-odd rule.

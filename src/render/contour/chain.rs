@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec2;
 use rvachev_num::order;
 
-use super::section::{Filling, Section};
+use super::section::{Entry, Filling, Section};
 use super::spread::Spread;
 use super::square::{Node, Root, Square};
 use super::tree::{Found, Leaf, key};
@@ -93,7 +93,7 @@ impl Chains<'_> {
             let pieces = self.pieces(leaf);
             let Square { node, size, side, .. } = leaf.square;
             match (leaf.way, pieces.len()) {
-                (Some(_), _) => {}
+                (Some(entry), _) => unresolved += usize::from(entry.by_samples),
                 // One that was not divided any more.
                 (None, _) if side > self.tolerance => unresolved += 1,
                 (None, 1) => drop(met.insert((node, size))),
@@ -118,7 +118,7 @@ impl Chains<'_> {
                 points.push(from);
                 last = Some(ends[1]);
                 match leaf.way {
-                    Some(way) => unresolved += self.refine(leaf, ends, way, &mut points),
+                    Some(Entry { way, .. }) => unresolved += self.refine(leaf, ends, way, &mut points),
                     None => {
                         let left = (ends[1] - ends[0]).perp().normalize_or_zero();
                         points.extend(self.corner(leaf, ends.map(|point| self.end(leaf, point, left))));
@@ -162,7 +162,7 @@ impl Chains<'_> {
             }
         }
         let count = met.len();
-        if let (Some(way), 4..) = (leaf.way, count) {
+        if let (Some(Entry { way, .. }), 4..) = (leaf.way, count) {
             // A graph: from each crossing to the next along it.
             let along = |crossing: &Crossing| way.perp_dot(self.crossing(leaf, *crossing));
             let ends = |leaving: bool| {

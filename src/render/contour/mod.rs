@@ -67,10 +67,10 @@ impl Slice {
     /// have one contour about them.
     ///
     /// Nothing that is wider than the tolerance is missed, and what is narrower is told
-    /// ([`Contours::unresolved`]). Where slopes have no bound (lengths as offsets, shells and
-    /// fillets; displacement and Ricci's blend; leaves at their pinched points; some users' fields)
-    /// nothing is missed that is wider than a 256th of the region, as far as the surface that
-    /// lengths are measured from shows it.
+    /// ([`Contours::unresolved`]). Of lengths (offsets, shells, fillets) that is so as far as their
+    /// [accuracy](Solid::accuracy) tells. Where slopes have no bound (leaves at their pinched
+    /// points, some users' fields) squares of a 256th to a 4096th of the region are looked at by
+    /// samples; each of them counts as unresolved.
     ///
     /// # Errors
     /// If the tolerance is not above 0.

@@ -23,8 +23,12 @@ pub(in super::super) fn aside(plane: &Plane, border: PlaneBounds, height: f64) -
 }
 
 /// Squares that are no larger, in the smallest squares, are looked at by samples where ranges of
-/// slopes tell little: a 256th of the first.
-const SAMPLED: u32 = 1 << (DEEPEST - 8);
+/// slopes tell nothing: a 256th of the first where halving them will not mend that, and else when
+/// they have been halved some times more.
+const SAMPLED: [u32; 2] = [1 << (DEEPEST - 8), 1 << (DEEPEST - 12)];
+
+/// Ranges that are wider than so many times what samples differ by do not become narrower soon.
+const WIDE: f64 = 4.0;
 
 /// Where, in a square, and the least cosine of the angle between a slope there and their mean.
 const SAMPLES: [[f64; 2]; 5] = [[0.5, 0.5], [0.02, 0.03], [0.97, 0.02], [0.98, 0.97], [0.03, 0.98]];
@@ -49,6 +53,20 @@ pub(super) enum Filling {
     Solid,
     /// A program does, and the border.
     Program(Program),
+}
+
+/// A direction along which a square's solid is entered.
+#[derive(Clone, Copy)]
+pub(super) struct Entry {
+    pub(super) way: DVec2,
+    /// Whether some points show it, and no ranges.
+    pub(super) by_samples: bool,
+}
+
+impl Entry {
+    fn told(way: DVec2) -> Entry {
+        Entry { way, by_samples: false }
+    }
 }
 
 /// A plane, and the rectangle that what goes on beyond it is cut to.
@@ -158,18 +176,16 @@ impl Section {
     /// A direction along which the solid is entered, and not left, throughout a square, and so
     /// along all directions within 30° of it: the contour is the graph of a function there that is
     /// no steeper than 60°.
-    pub(super) fn way_in(&self, filling: &Filling, square: &Square) -> Option<DVec2> {
+    pub(super) fn way_in(&self, filling: &Filling, square: &Square) -> Option<Entry> {
         let (low, high) = (square.low, square.low + square.side);
-        let way = match filling {
-            Filling::Solid => self.crossed(low, high).sum::<DVec2>().try_normalize()?,
-            Filling::Program(program)
-                if square.size <= SAMPLED && self.holds(square) && !self.is_told(program, square) =>
-            {
-                self.sampled_way(filling, square).or_else(|| self.told_way(program, square))?
-            }
-            Filling::Program(program) => self.told_way(program, square)?,
+        let entry = match filling {
+            Filling::Solid => Entry::told(self.crossed(low, high).sum::<DVec2>().try_normalize()?),
+            Filling::Program(program) => match self.told_way(program, square) {
+                Some(way) => Entry::told(way),
+                None => self.sampled_way(filling, program, square)?,
+            },
         };
-        self.crossed(low, high).all(|inward| inward.dot(way) > STRAIGHT).then_some(way)
+        self.crossed(low, high).all(|inward| inward.dot(entry.way) > STRAIGHT).then_some(entry)
     }
 
     /// The same as ranges tell it.
@@ -185,13 +201,23 @@ impl Section {
         program.is_steady() && program.steepest(&Bounds::new(low.min(high), low.max(high))).is_finite()
     }
 
-    /// The same as it looks at some points: of values that are searched for, ranges of slopes tell
-    /// little.
-    fn sampled_way(&self, filling: &Filling, square: &Square) -> Option<DVec2> {
-        let at = |[x, y]: [f64; 2]| square.low + square.side * DVec2::new(x, y);
-        let slopes = SAMPLES.map(|sample| self.gradient(filling, at(sample)).normalize_or_zero());
+    /// The same as it looks at some points: of some values ranges of slopes tell nothing.
+    fn sampled_way(&self, filling: &Filling, program: &Program, square: &Square) -> Option<Entry> {
+        let [most, least] = SAMPLED;
+        if square.size > most || !self.holds(square) || self.is_told(program, square) {
+            return None;
+        }
+        let samples = SAMPLES.map(|[x, y]| square.low + square.side * DVec2::new(x, y));
+        let slopes = samples.map(|p| self.gradient(filling, p).normalize_or_zero());
         let way = slopes.iter().sum::<DVec2>().try_normalize()?;
-        slopes.iter().all(|slope| slope.dot(way) > STRAIGHT).then_some(way)
+        let is_way = slopes.iter().all(|slope| slope.dot(way) > STRAIGHT);
+        let is_last = || {
+            let values = samples.map(|p| self.value(filling, p));
+            let [low, high] = [f64::min, f64::max].map(|of| values.into_iter().reduce(of).unwrap_or(0.0));
+            let range = program.range_zone(&self.zone(square.low, square.low + square.side, [0.0; 2]));
+            range.width() > WIDE * (high - low)
+        };
+        (is_way && (square.size <= least || is_last())).then_some(Entry { way, by_samples: true })
     }
 
     /// Whether a square is all inside, or all outside, because what begins there ends there too.

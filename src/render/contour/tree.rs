@@ -15,10 +15,9 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use glam::DVec2;
 use rvachev_num::{Meter, jobs};
 
-use super::section::{Filling, Section};
+use super::section::{Entry, Filling, Section};
 use super::spread::Spread;
 use super::square::{Node, Root, Square};
 use crate::eval::Program;
@@ -36,7 +35,7 @@ pub(super) struct Leaf {
     pub(super) square: Square,
     pub(super) filling: Filling,
     /// Where the solid is entered, and not left, all over it, if there is such a direction.
-    pub(super) way: Option<DVec2>,
+    pub(super) way: Option<Entry>,
 }
 
 /// What is found of one plane.

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::SurfaceDistance;
 use super::tests::{Random, built, cuboid, sphere};
 use crate::kernel::CHUNK;
-use crate::{AnyField, Bounds, Chunk, Cuboid, Dual, Placement, Sphere, VALUE_LIMIT, Zone};
+use crate::{AnyField, Bounds, Chunk, Cuboid, Dual, Placement, Sphere, VALUE_LIMIT, Way, Zone};
 
 /// A unit sphere of patches as a leaf.
 fn ball(n: usize) -> SurfaceDistance {
@@ -92,7 +92,7 @@ fn lanes_are_the_values_of_single_points() {
     let mut random = Random(6);
     let map = DAffine3::from_scale_rotation_translation(
         DVec3::splat(0.5),
-        glam::DQuat::from_rotation_x(0.7),
+        DQuat::from_rotation_x(0.7),
         DVec3::new(0.1, -0.2, 0.3),
     );
     let placement = Placement::new(&map, 2.0, -0.25);
@@ -215,4 +215,48 @@ fn between_patches_and_the_sign_the_gradient_points_inwards() {
         let slope = DVec3::new(out[1][0].into(), out[2][0].into(), out[3][0].into());
         assert!(slope.dot(-outwards) > 0.99, "{slope} at {p} on lanes");
     }
+}
+
+#[test]
+fn along_ways_that_are_told_values_rise() {
+    let (mut random, mut told) = (Random(29), [0; 2]);
+    for (which, field) in [ball(16), slab(DVec3::new(0.7, 0.5, 0.05))].iter().enumerate() {
+        for number in 0..4000 {
+            let centre = random.point(1.6);
+            let half = random.point(f64::powi(0.5, 1 + number % 6)).abs();
+            let zone = Zone::of_bounds(&Bounds::from_center(centre, 2.0 * half));
+            let slope = DVec3::from_array(field.dual(Dual::point(centre.to_array())).d);
+            let way = Way { middle: slope + random.point(0.5), sway: [0.0, 0.3][number as usize % 2] };
+            if field.rises(&zone, &[way]) == 0 {
+                continue;
+            }
+            told[which] += 1;
+            for _ in 0..20 {
+                let p = centre + half * random.point(1.0);
+                let aside = random.point(1.0).clamp_length_max(1.0);
+                let Dual { v, d } = field.dual(Dual::point(p.to_array()));
+                // At the surface the side is only known to within the error.
+                if v.abs() <= field.error() {
+                    continue;
+                }
+                let slope = DVec3::from_array(d);
+                let along = slope.dot(way.middle + way.sway * aside);
+                assert!(along > -1e-3, "{which}: {way:?} at {p}, {along} where it is {v}");
+            }
+        }
+    }
+    assert!(told.iter().all(|told| *told > 1000), "{told:?}");
+}
+
+/// Feet on an edge are between two faces, but away from either one's normal.
+#[test]
+fn beside_edges_ways_are_told_by_where_feet_are() {
+    let field = slab(DVec3::new(0.7, 0.5, 0.3));
+    let zone = Zone::of_bounds(&Bounds::from_center(DVec3::new(1.0, 0.9, 0.0), DVec3::splat(0.02)));
+    // At 70° from the way to the edge: along it one face's distance falls.
+    let way = |degrees: f64| {
+        let to_edge = DVec3::new(-0.6, -0.8, 0.0);
+        Way { middle: DQuat::from_rotation_z(degrees.to_radians()) * to_edge, sway: 0.0 }
+    };
+    assert_eq!(field.rises(&zone, &[way(0.0), way(70.0), way(-70.0), way(100.0)]), 0b111);
 }

@@ -32,6 +32,7 @@ mod block;
 mod chunks;
 mod closest;
 mod curved;
+mod cut;
 mod disc;
 mod double;
 mod face;

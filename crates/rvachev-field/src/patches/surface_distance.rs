@@ -328,6 +328,10 @@ impl AnyField for SurfaceDistance {
         self.rising(zone, ways)
     }
 
+    fn inward(&self, zone: &Zone) -> Option<DVec3> {
+        self.inward_over(zone)
+    }
+
     fn layers(&self, zone: &Zone, level: f64) -> Option<Vec<Layer>> {
         self.level_layers(zone, level)
     }
