@@ -332,7 +332,7 @@ impl Field for Rough {
     }
     fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
         // The root of a difference of all but equal numbers has any slope, as far as ranges tell.
-        -x.norm(y, Norm::Euclid).norm(z, Norm::Euclid) + 1.0 + (x * x - x * x * (1.0 + 1e-12)).abs().sqrt() * 0.01
+        -x.norm(y, Norm::Euclid).norm(z, Norm::Euclid) + 1.0 + (x * x - x * x * (1.0 + 1e-12)).abs().sqrt()
     }
     fn bounds(&self) -> Bounds {
         Bounds::from_center(DVec3::ZERO, DVec3::splat(1.0))
@@ -347,10 +347,11 @@ impl Field for Rough {
 
 #[test]
 fn what_only_samples_show_is_told() {
-    let contours = cut(&Solid::new(Rough), 0.3, 1e-3);
+    let contours = cut(&Solid::new(Rough), 0.3, 1e-4);
     assert_eq!(contours.len(), 1);
     assert!((contours.area() - PI * 0.91).abs() < 1e-2, "{}", contours.area());
-    assert!(contours.unresolved() > 100, "{}", contours.unresolved());
+    // And not halved for long.
+    assert!((100..50_000).contains(&contours.unresolved()), "{}", contours.unresolved());
 }
 
 /// Whether a point is within contours, by the even-odd rule.

@@ -27,6 +27,9 @@ pub(in super::super) fn aside(plane: &Plane, border: PlaneBounds, height: f64) -
 /// they have been halved some times more.
 const SAMPLED: [u32; 2] = [1 << (DEEPEST - 8), 1 << (DEEPEST - 12)];
 
+/// Steeper than this ranges of slopes tell nothing: that of a root is held there where it has none.
+const STEEP: f64 = 1e9;
+
 /// Ranges that are wider than so many times what samples differ by do not become narrower soon.
 const WIDE: f64 = 4.0;
 
@@ -198,7 +201,7 @@ impl Section {
     /// Whether ranges of slopes tell something.
     fn is_told(&self, program: &Program, square: &Square) -> bool {
         let [low, high] = [square.low, square.low + square.side].map(|p| self.plane.point(p));
-        program.is_steady() && program.steepest(&Bounds::new(low.min(high), low.max(high))).is_finite()
+        program.is_steady() && program.steepest(&Bounds::new(low.min(high), low.max(high))) < STEEP
     }
 
     /// The same as it looks at some points: of some values ranges of slopes tell nothing.
