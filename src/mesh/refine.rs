@@ -22,6 +22,7 @@ mod inset;
 mod level;
 mod piece;
 mod place;
+mod rims;
 mod seam;
 mod side;
 mod tolerance;

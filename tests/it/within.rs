@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 use rvachev::{
-    Blend, Bounds, CancelToken, CellSize, Features, Gielis, Mesh, MeshSettings, MinimalSurface, Run, SheetLattice,
-    Solid, Supershape, ThinFeatures, deg, error::MeshingError,
+    Blend, Bounds, CancelToken, CellSize, Features, Gielis, Mesh, MeshSettings, MeshSolid, MinimalSurface, Run,
+    SheetLattice, Solid, Supershape, ThinFeatures, deg, error::MeshingError,
 };
 
 use super::support::Random;
@@ -218,4 +218,25 @@ fn what_has_no_end_is_cut_by_the_bounds() {
     assert!((column - 1.0).abs() < 1e-3, "{column}");
     let corner = Solid::half_space(DVec3::X, 0.0) & Solid::half_space(DVec3::Y, 0.0);
     assert!((volume(corner) - 2.0).abs() < 1e-3);
+}
+
+/// No point of a mesh that ends before an acute rim is far from the surface; the rim is from it.
+#[test]
+fn rims_are_within_the_tolerance() {
+    let cone = Solid::cone(3.0, 0.0, 0.76);
+    let rows = [
+        (Solid::cone(3.0, 0.0, 2.0), [3.0, -1.0], 0.02),
+        (cone.clone(), [3.0, -0.38], 0.05),
+        (Solid::cylinder(3.2, 2.0) - cone.translate([0.0, 0.0, 0.9]), [3.0, 0.52], 0.04),
+    ];
+    for (number, (solid, [radius, height], tolerance)) in rows.into_iter().enumerate() {
+        let mesh = within(&solid, tolerance);
+        let measured = Solid::from_mesh(&mesh, MeshSolid::default());
+        let at = |k: u32| DVec3::new(radius, 0.0, height).rotate_z(f64::from(k) * 0.0314);
+        let points: Vec<DVec3> = (0..200).map(at).collect();
+        let feet = measured.closest_surface_points(&points).unwrap();
+        let off = points.iter().zip(feet).map(|(p, foot)| p.distance(foot.unwrap())).fold(0.0, f64::max);
+        assert!(mesh.check().is_sound(), "row {number}");
+        assert!(off < tolerance, "row {number}: {off}");
+    }
 }

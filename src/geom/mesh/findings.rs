@@ -86,8 +86,9 @@ impl Mesh {
 
     /// How far triangles and surface are apart, in length units, where a mesh was made
     /// [within a tolerance](crate::CellSize::Tolerance); `None` if it was not. It is what was found
-    /// at the vertices and in the middles of triangles and sides, and at the corners of
-    /// [meshes](crate::Solid::from_mesh) that the solid is made of.
+    /// at the vertices and in the middles of triangles and sides, beyond sides where faces meet at
+    /// an acute angle, and at the corners of [meshes](crate::Solid::from_mesh) that the solid is
+    /// made of.
     #[must_use]
     pub fn deviation(&self) -> Option<f64> {
         self.findings.deviation.map(|[found, _]| found)

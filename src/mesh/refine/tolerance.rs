@@ -11,6 +11,7 @@ use rvachev_num::order;
 
 use super::corners::{corners, lost};
 use super::level::Level;
+use super::rims::cut_off;
 use super::{Job, divided, grade, meshed};
 use crate::Run;
 use crate::geom::Mesh;
@@ -92,7 +93,8 @@ pub(in crate::mesh) fn within(
         };
         let probes = probes(&mesh, job.program, tolerance, &to_compare)?;
         let is_off = |probe: &&Probe| probe.off > tolerance;
-        let lost = lost(&mesh, &known, (job.program, tolerance), &quiet(run))?;
+        let mut lost = lost(&mesh, &known, (job.program, tolerance), &quiet(run))?;
+        lost.extend(cut_off(&mesh, (job.program, tolerance), &quiet(run))?);
         let farthest_lost = lost.iter().fold(0.0, |most: f64, (_, far)| most.max(*far));
         let far = largest(&probes).max(farthest_lost);
         if let [level] = &levels[..] {
