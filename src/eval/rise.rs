@@ -202,7 +202,7 @@ impl Program {
             let slopes = instance.field.dual_range(Dual::point(zone.hull())).d;
             let is_level = |way: Way| {
                 let along = dot(slopes, way.middle.to_array().map(Interval::point)).magnitude();
-                along <= LEVEL * way.middle.length() && way.sway == 0.0
+                along + way.sway * steepest(slopes) <= LEVEL * way.middle.length()
             };
             found | bits(ways, is_level)
         })

@@ -52,8 +52,8 @@ impl Contours {
     /// In so many places it was left undecided what is there: a sheet or a hole that is thinner
     /// than the tolerance, no nearer to a contour than that, the thin end of a gap or a tip, a
     /// point where two contours touch; at a tolerance that is very fine for its solid, a contour
-    /// that was not followed any further; or what only samples show, where a field's slopes have no
-    /// bound or a length's surface is hardly known.
+    /// that was not followed any further; or what only samples show, where ranges of a field tell
+    /// nothing.
     #[must_use]
     pub fn unresolved(&self) -> usize {
         self.unresolved

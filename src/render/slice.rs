@@ -220,7 +220,7 @@ impl Slice {
         {
             return Err(setting("isolines", step, "finite and above 0"));
         }
-        let above = self.plane.moved_by(aside(&self.plane, self.region, 0.0));
+        let above = self.plane.moved_by(aside(&self.surface, &self.plane, self.region, 0.0));
         let [to_value, to_draw] = run.stages([0.8, 0.2]);
         let values = self.values_on(&above, settings.width, &to_value)?;
         let (width, height) = (values.width() as usize, values.height() as usize);

@@ -322,6 +322,24 @@ fn contours_of_lengths_and_blends_are_told_by_ranges() {
     }
 }
 
+/// Planes in faces that lengths are measured to, and just beside them.
+#[test]
+fn planes_in_and_beside_measured_faces_are_told() {
+    let tower = Solid::cuboid([2.0, 1.6, 1.0]) | Solid::cuboid([0.7, 0.7, 2.0]).translate([0.4, 0.2, 0.3]);
+    let shell = tower.shell(0.05);
+    // The roof of the cavity is at 1.25.
+    for (height, area) in [(1.25, 0.49), (1.247, 0.13), (1.249, 0.13)] {
+        let contours = cut(&shell, height, 1e-3);
+        assert_eq!(contours.unresolved(), 0, "at {height}");
+        assert!((contours.area() - area).abs() < 1e-4, "at {height}: {}", contours.area());
+    }
+    let box_moved_out =
+        Profile::polygon([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]).extrude(1.0).offset(0.08);
+    let contours = cut(&box_moved_out, 0.01, 1e-3);
+    assert_eq!(contours.unresolved(), 0);
+    assert!((contours.area() - (4.64 + PI * 0.0064)).abs() < 1e-3, "{}", contours.area());
+}
+
 /// A ball whose slopes no range tells.
 #[derive(Debug)]
 struct Rough;

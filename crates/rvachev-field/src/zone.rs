@@ -99,6 +99,11 @@ impl Zone {
         self.hull.iter().fold(0.0, |reach, side| reach.max(side.magnitude()))
     }
 
+    /// Whether it is no more than a rectangle.
+    pub fn is_flat(&self) -> bool {
+        [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis].contains(&DVec3::ZERO)
+    }
+
     /// Whether it fills its hull, as a box (or a rectangle, or a segment) along the axes does.
     pub fn is_aligned(&self) -> bool {
         let size = self.axes.x_axis.abs().max(self.axes.y_axis.abs()).max(self.axes.z_axis.abs()).max_element();

@@ -68,9 +68,11 @@ impl Slice {
     ///
     /// Nothing that is wider than the tolerance is missed, and what is narrower is told
     /// ([`Contours::unresolved`]). Of lengths (offsets, shells, fillets) that is so as far as their
-    /// [accuracy](Solid::accuracy) tells. Where slopes have no bound (leaves at their pinched
-    /// points, some users' fields) squares of a 256th to a 4096th of the region are looked at by
-    /// samples; each of them counts as unresolved.
+    /// [accuracy](Solid::accuracy) tells. Where ranges tell nothing (leaves at their pinched points,
+    /// some users' fields, lengths and fillets beside a face that lies along the plane) squares of a
+    /// 256th to a 4096th of the region are looked at by samples; each of them counts as unresolved.
+    /// Of a solid with measured lengths the plane is a 2⁻¹⁸th of the region's size aside of where it
+    /// is asked for, else a 2⁻³⁷th.
     ///
     /// # Errors
     /// If the tolerance is not above 0.
@@ -167,7 +169,7 @@ fn stack(
     let size = (region.max - region.min).max_element();
     let tolerance = tolerance.max(FINEST * size);
     let root = Root { low: region.min - DVec2::splat(MARGIN * ASIDE * size), side: (1.0 + MARGIN) * size };
-    let sections = Section::stack(plane, heights, &ContourSettings { tolerance, ..*settings }, region);
+    let sections = Section::stack(program, plane, heights, &ContourSettings { tolerance, ..*settings }, region);
     let [to_divide, to_join] = run.stages([0.7, 0.3]);
     let whole = Filling::Program(program.clone());
     let made: Result<Vec<Contours>, Cancelled> = run.install(|| {

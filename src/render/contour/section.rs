@@ -16,10 +16,14 @@ use rvachev_field::Zone;
 /// near.
 const EPSILON: f64 = 1.0 / (1u64 << 37) as f64;
 
+/// The same where lengths are measured, from surfaces in single precision.
+const MEASURED: f64 = 1.0 / (1u64 << 18) as f64;
+
 /// How far above a plane, and those up to a height above it, it is to be looked for what counts as
 /// above it.
-pub(in super::super) fn aside(plane: &Plane, border: PlaneBounds, height: f64) -> f64 {
-    EPSILON * ((border.max - border.min).max_element() + plane.origin().abs().max_element() + height)
+pub(in super::super) fn aside(program: &Program, plane: &Plane, border: PlaneBounds, height: f64) -> f64 {
+    let epsilon = if program.is_steady() { EPSILON } else { MEASURED };
+    epsilon * ((border.max - border.min).max_element() + plane.origin().abs().max_element() + height)
 }
 
 /// Squares that are no larger, in the smallest squares, are looked at by samples where ranges of
@@ -89,6 +93,7 @@ const INWARDS: [DVec2; 4] = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y];
 impl Section {
     /// Planes at heights above one.
     pub(super) fn stack(
+        program: &Program,
         plane: &Plane,
         heights: &[f64],
         settings: &ContourSettings,
@@ -96,7 +101,7 @@ impl Section {
     ) -> Vec<Section> {
         let farthest = heights.iter().fold(0.0, |farthest: f64, height| farthest.max(height.abs()));
         // One for all: the planes of a stack stay as far apart as they are.
-        let epsilon = aside(plane, border, farthest);
+        let epsilon = aside(program, plane, border, farthest);
         let aside = match settings.side {
             Side::Above => epsilon,
             Side::Below => -epsilon,

@@ -9,7 +9,7 @@
 use glam::{DMat3, DVec3};
 
 use super::Patches;
-use super::face::double;
+use super::face::{SLACK, double};
 use super::hierarchy::{Node, PARENT};
 use crate::Zone;
 
@@ -131,13 +131,36 @@ impl Patches {
             }
             for at in node.first..node.first + node.count {
                 looked += 1;
-                nearest = nearest.min(self.patch_apart(&seen, at as usize));
+                let mut gap = self.patch_apart(&seen, at as usize);
+                // Of a rectangle, what a curved patch does not tell by its plane it does by a point.
+                if gap < nearest && zone.is_flat() && !self.faces[at as usize].is_flat() {
+                    let foot = self.closest(at as usize, seen.centre.to_array());
+                    gap = gap.max(foot.square.sqrt() - zone.radius() / unit - SLACK);
+                }
+                nearest = nearest.min(gap);
                 if nearest <= least {
                     return None;
                 }
             }
         }
         Some(nearest * unit).filter(|nearest| nearest.is_finite())
+    }
+
+    /// How far points of a zone are from the patches at most, as the patch that is nearest to its
+    /// middle tells, if all are above it.
+    pub(super) fn beside(&self, zone: &Zone) -> Option<f64> {
+        let seen = self.seen(zone);
+        let at = self.search_one(seen.centre.to_array()).which as usize;
+        let (face, sides) = self.at(at)?;
+        let [a, e, f] = [double(face.a), double(sides.e), double(sides.f)];
+        let normal = e.cross(f).try_normalize()?;
+        let is_within = |(from, along): (DVec3, DVec3)| {
+            let inwards = normal.cross(along);
+            inwards.dot(seen.centre - from) >= seen.reach(inwards)
+        };
+        let is_above = [(a, e), (a + e, f - e), (a + f, -f)].into_iter().all(is_within);
+        let most = normal.dot(a - seen.centre).abs() + seen.reach(normal) + f64::from(face.sag);
+        is_above.then_some(most * self.frame.unit)
     }
 
     /// How far a patch is, at least.

@@ -260,3 +260,14 @@ fn beside_edges_ways_are_told_by_where_feet_are() {
     };
     assert_eq!(field.rises(&zone, &[way(0.0), way(70.0), way(-70.0), way(100.0)]), 0b111);
 }
+
+/// A rectangle beside a face is as far from it all over, whatever its size.
+#[test]
+fn ranges_over_rectangles_along_a_face_are_its_distance() {
+    let field = slab(DVec3::new(0.7, 0.5, 0.3));
+    for (height, value) in [(0.35, -0.05), (0.31, -0.01), (0.28, 0.02)] {
+        let axes = DMat3::from_cols(0.1 * DVec3::X, 0.1 * DVec3::Y, DVec3::ZERO);
+        let range = field.range(&Zone::of_frame(DVec3::new(0.5, 0.0, height), axes));
+        assert!(range.contains(value) && range.width() < 1e-5, "{height}: {range:?}");
+    }
+}

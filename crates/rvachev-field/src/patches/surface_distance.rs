@@ -151,9 +151,16 @@ impl SurfaceDistance {
         }
     }
 
-    /// How far a range over a zone may be off, given the distance from its centre.
+    /// How far a range over a zone may be off, given the distance from its centre: rounding, where
+    /// no point is as near to the patches as the sign may change.
     pub(super) fn slack(&self, zone: &Zone, distance: f64) -> f64 {
-        2.0 * (self.error + self.patches.rounding()) + 1e-12 * (zone.reach() + distance)
+        let rounding = self.rounding(zone, distance);
+        let is_apart = distance - self.radius(zone) > self.error + rounding;
+        if is_apart { rounding } else { rounding + 2.0 * self.error }
+    }
+
+    fn rounding(&self, zone: &Zone, distance: f64) -> f64 {
+        2.0 * self.patches.rounding() + 1e-12 * (zone.reach() + distance)
     }
 
     /// How far points of a zone are from the surface on its centre's side, at least and at most,
@@ -167,17 +174,23 @@ impl SurfaceDistance {
         if radius > size && !self.patches.is_empty() {
             let (own, farthest) = (self.across(zone).hull(), self.farthest(zone, bounds.center()) + size);
             let gap = |axis: usize| (own[axis].lo() - bounds.max[axis]).max(bounds.min[axis] - own[axis].hi()).max(0.0);
-            let slack = self.slack(zone, farthest) + more;
+            let slack = self.rounding(zone, farthest) + 2.0 * self.error + more;
             let (apart, far) = (DVec3::new(gap(0), gap(1), gap(2)).length() - slack, farthest + slack);
             return Some([if apart > 0.0 { apart } else { -far }, far]);
         }
         let foot = self.patches.nearest(self.flattened(zone.centre))?;
         let slack = self.slack(zone, foot.distance) + more;
         let within_ball = foot.distance - radius - slack;
-        let apart = if within_ball <= 0.0 && self.side.is_none() { self.apart(zone, slack) } else { 0.0 };
+        // A rectangle along a face is as far from it all over.
+        let is_flat = zone.is_flat();
+        let is_asked = is_flat || within_ball <= 0.0 && self.side.is_none();
+        let apart = if is_asked { self.apart(zone, slack) } else { 0.0 };
         // No point is farther from the surface than from that one point of it.
-        let far = (foot.distance + radius).min(self.farthest(zone, foot.point)) + slack;
-        Some([if apart > 0.0 { apart } else { within_ball }, far])
+        let mut far = (foot.distance + radius).min(self.farthest(zone, foot.point));
+        if is_flat {
+            far = far.min(self.patches.beside(&self.across(zone)).unwrap_or(far));
+        }
+        Some([if apart > 0.0 { apart.max(within_ball) } else { within_ball }, far + slack])
     }
 
     /// How far a point of the surface is from points of a zone at most.
