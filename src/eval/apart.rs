@@ -19,7 +19,7 @@ use super::nothing::Nothing;
 use super::sided::{Found, Side, divided, sided};
 use super::source::{CompileError, DistanceSource, Measured, Surface, Wanted, reach, surface};
 use super::tiles::Tiles;
-use crate::solid::{BALL_OF_LEGS, Length, Node, Operation};
+use crate::solid::{BALL_OF_LEGS, DEVIATION, Length, Node, Operation};
 use crate::{Blend, Bounds, Cancelled, Run, Solid};
 use rvachev_field::{AnyField, SurfaceDistance};
 
@@ -124,8 +124,9 @@ pub(super) fn measure(
                 (bounds.min[axis], bounds.max[axis]) = (0.0, 0.0);
             }
             let is_thin = inwards > 0.0 && bounds.is_finite();
-            let is_gone =
-                bounds.is_empty() || is_thin && !is_deeper(&*field, &bounds, accuracy.tolerance + inwards, run)?;
+            // What is hardly known is not gone for that.
+            let noise = accuracy.tolerance.min(tolerance.unwrap_or(DEVIATION * inwards));
+            let is_gone = bounds.is_empty() || is_thin && !is_deeper(&*field, &bounds, inwards + noise, run)?;
             Measured { field, parts, accuracy, is_gone, sides: Vec::new() }
         }
         Node::Blend { operation, blend, operands, ball: Some(ball), .. } => {
