@@ -197,20 +197,20 @@ impl AnyField for Bevel {
         self.held(self.face(zone, values).height, values)
     }
 
-    /// What a plane takes turns round nowhere but where the operands do, in zones that are small
-    /// beside it; and it rises where its own slopes tell so, and those of what is less there.
+    /// It rises where the slopes of its face tell so, and those of what is less there: the face
+    /// jumps where an operand's normal does.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
-        let turned = |i: usize| -> Vec<Way> { ways.iter().map(|way| way.flip_if(self.signs[i] < 0.0)).collect() };
-        let [first, second] = [0, 1].map(|i| self.operands[i].rises(zone, &turned(i)));
-        let of_both = if self.chamfer.leg > 2.0 * zone.radius() { first & second } else { 0 };
-        if of_both == bits(ways, |_| true) {
-            return of_both;
-        }
         let values = self.ranges(zone);
         let face = self.face(zone, values);
-        let is_more = |i: usize| values[i].lo() + self.chamfer.reach() > face.height.hi();
-        let own = |i: usize, rises: u8| if is_more(i) { u8::MAX } else { rises };
-        of_both | bits(ways, |way| way.is_rise(face.slopes)) & own(0, first) & own(1, second)
+        let found = bits(ways, |way| way.is_rise(face.slopes));
+        let of_operand = |found: u8, i: usize| {
+            if found == 0 || values[i].lo() + self.chamfer.reach() > face.height.hi() {
+                return found;
+            }
+            let turned: Vec<Way> = ways.iter().map(|way| way.flip_if(self.signs[i] < 0.0)).collect();
+            found & self.operands[i].rises(zone, &turned)
+        };
+        (0..2).fold(found, of_operand)
     }
 
     fn steepest(&self, _zone: &Zone) -> f64 {

@@ -300,7 +300,8 @@ impl AnyField for Fill {
             let own = ways.iter().map(|way| Way { sway: way.sway + fade * way.middle.length(), ..*way });
             own.map(|way| way.flip_if(sign < 0.0)).collect()
         };
-        // The more of the two nearest operands may become farther, the faster the ball is to.
+        // The more of the two nearest operands may become farther, the faster the ball is to: its
+        // slope is 1, as all distances' is.
         let (mut by_sides, mut but_one) = (u8::MAX, u8::MAX);
         for side in self.sides.iter().filter(|side| meets(zone, &side.bounds)) {
             let own = side.distance.field.rises(zone, &turned(-side.distance.sign, 0.0));

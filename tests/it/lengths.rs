@@ -901,7 +901,6 @@ fn check_balls(name: &str, solid: &Solid, nearest: impl Fn(DVec3) -> DVec3) {
 
 /// What is measured to no more than half a wall's thickness is not gone for that.
 #[test]
-#[ignore = "takes a minute"]
 fn a_lattice_in_a_box_that_is_moved_in_is_there() {
     let gyroid = Solid::from(SheetLattice { surface: MinimalSurface::Gyroid, cell: 1.0, thickness: 0.15 });
     let part = gyroid & Solid::cuboid([2.0, 1.6, 1.0]);

@@ -340,6 +340,28 @@ fn planes_in_and_beside_measured_faces_are_told() {
     assert!((contours.area() - (4.64 + PI * 0.0064)).abs() < 1e-3, "{}", contours.area());
 }
 
+/// The face of a chamfer jumps where an operand's normal does: the contour goes along the jump.
+#[test]
+fn contours_follow_the_jumps_of_chamfers() {
+    let rod = Solid::cylinder(0.8, 1.4).rotate_y(rad(1.0));
+    let part = Solid::cuboid([2.0, 1.6, 1.0]).intersection_with(rod, Blend::Chamfer { leg: 0.15 });
+    let contours = cut(&part, 0.03, 1e-3);
+    // Points of a grid about it that are inside and outside, and not near the contour.
+    for i in -12..=12 {
+        for j in -12..=12 {
+            let p = DVec2::new(0.7964 + 5e-4 * f64::from(i), -0.6727 + 5e-4 * f64::from(j));
+            let edges = contours.iter().flat_map(Polyline::edges);
+            let off = edges.map(|[a, b]| {
+                let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+                p.distance(a.lerp(b, t))
+            });
+            let is_near = off.fold(f64::INFINITY, f64::min) < 1.5e-3;
+            let is_inside = part.contains([p.x, p.y, 0.03]).unwrap();
+            assert!(is_near || is_within(&contours, p) == is_inside, "{p}");
+        }
+    }
+}
+
 /// A ball whose slopes no range tells.
 #[derive(Debug)]
 struct Rough;
