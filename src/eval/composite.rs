@@ -119,6 +119,10 @@ impl AnyField for Composite {
         self.program.rises(zone, ways)
     }
 
+    fn enters(&self, zone: &Zone, ways: &[Way], level: f64) -> u8 {
+        self.program.enters(zone, ways, level)
+    }
+
     fn layers(&self, zone: &Zone, level: f64) -> Option<Vec<Layer>> {
         let by_leaf = self.program.layers(zone, level);
         by_leaf.or_else(|| self.is_distance.then(|| level_layers(self, zone, level)).flatten())

@@ -187,6 +187,14 @@ impl Fill {
         all
     }
 
+    /// The value of the ball's field where this is at a level, where it does not fade away from
+    /// operands: the ball is as far as its radius there.
+    fn level_of_ball(&self, zone: &Zone, level: f64) -> Option<f64> {
+        let height = self.margin + level;
+        let is_ball = self.sides.is_empty() && height < MOST * self.radius && self.box_depth(zone).lo() > level;
+        is_ball.then_some(self.ball.sign * (self.radius + height))
+    }
+
     /// The steepest that it is.
     fn steepness(&self) -> f64 {
         if self.sides.is_empty() { 1.0 } else { 1.0 + 2.0 * FADE }
@@ -317,18 +325,19 @@ impl AnyField for Fill {
         found & self.off_hull(zone, highest.min(MOST * self.radius), ways)
     }
 
+    fn enters(&self, zone: &Zone, ways: &[Way], level: f64) -> u8 {
+        let Some(level) = self.level_of_ball(zone, level) else { return self.rises(zone, ways) };
+        let own: Vec<Way> = ways.iter().map(|way| way.flip_if(self.ball.sign < 0.0)).collect();
+        self.ball.field.enters(zone, &own, level)
+    }
+
     fn inward(&self, zone: &Zone) -> Option<DVec3> {
         Some(self.ball.sign * self.ball.field.inward(zone)?)
     }
 
-    /// Where it does not fade away from operands, its surface is where the ball is as far as its
-    /// radius.
     fn layers(&self, zone: &Zone, level: f64) -> Option<Vec<Layer>> {
-        let height = self.margin + level;
-        let is_ball = self.sides.is_empty() && height < MOST * self.radius && self.box_depth(zone).lo() > level;
-        let sign = self.ball.sign;
-        let found = is_ball.then(|| self.ball.field.layers(zone, sign * (self.radius + height))).flatten()?;
-        Some(if sign < 0.0 { found.into_iter().map(Layer::turned).collect() } else { found })
+        let found = self.ball.field.layers(zone, self.level_of_ball(zone, level)?)?;
+        Some(if self.ball.sign < 0.0 { found.into_iter().map(Layer::turned).collect() } else { found })
     }
 
     fn steepest(&self, _zone: &Zone) -> f64 {

@@ -86,7 +86,7 @@ fn are_flush([a, b]: [&Program; 2], zone: &Zone, axes: [DVec3; 2], [doubt, toler
     // What rises along both of these is no steeper than the tolerance from one line to the next.
     let lean = APART * half / tolerance * across;
     let ways = |way: DVec3| [way - lean, way + lean].map(|middle| Way { middle, sway: 0.0 });
-    if a.enters(zone, &ways(way)) != 3 || b.enters(zone, &ways(-way)) != 3 {
+    if a.enters(zone, &ways(way), 0.0) != 3 || b.enters(zone, &ways(-way), 0.0) != 3 {
         return false;
     }
     LINES.into_iter().all(|line| {

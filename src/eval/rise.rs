@@ -15,7 +15,7 @@ use glam::DVec3;
 use super::program::{Kind, Program};
 use super::scene::Instance;
 use crate::{Bounds, Dual, Interval};
-use rvachev_field::{AnyField, AnyWarp, Pieces, Rule, Way, Zone, bits, dot, largest_stretch, steepest};
+use rvachev_field::{AnyField, AnyWarp, Pieces, Placement, Rule, Way, Zone, bits, dot, largest_stretch, steepest};
 
 /// A leaf, and whether its complement counts.
 #[derive(Clone, Copy)]
@@ -141,7 +141,7 @@ impl Program {
             // What rises along two directions does so along all between them.
             let across = middle.cross(axes[0].cross(axes[1]));
             let ways = [-LEAN, LEAN].map(|lean| Way { middle: middle + lean * across, sway: 0.0 });
-            (self.all_enter(&parts, (&zones, &world), &ways) == 3).then_some(middle)
+            (self.all_enter(&parts, (&zones, &world), &ways, 0.0) == 3).then_some(middle)
         };
         let middle: Vec<DVec3> = at(zone.centre).collect();
         let of_middle = common(&middle).filter(|way| around.iter().all(|slope| slope.dot(*way) > 0.0));
@@ -171,15 +171,15 @@ impl Program {
         (one.lo() > 0.0 && other.lo() > 0.0).then_some(middle)
     }
 
-    /// The directions, of up to eight, along which the solid is found to be entered, and not left,
-    /// throughout a zone.
-    pub(crate) fn enters(&self, zone: &Zone, ways: &[Way]) -> u8 {
+    /// The directions, of up to eight, along which what is above a level is found to be entered, and
+    /// not left, throughout a zone.
+    pub(crate) fn enters(&self, zone: &Zone, ways: &[Way], level: f64) -> u8 {
         let world = Pieces::one(*zone);
-        self.parts().map_or(0, |parts| self.all_enter(&parts, (&self.zones(&world), &world), ways))
+        self.parts().map_or(0, |parts| self.all_enter(&parts, (&self.zones(&world), &world), ways, level))
     }
 
     /// The same of these parts.
-    fn all_enter(&self, parts: &[Part], seen: (&[Pieces], &Pieces), ways: &[Way]) -> u8 {
+    fn all_enter(&self, parts: &[Part], seen: (&[Pieces], &Pieces), ways: &[Way], level: f64) -> u8 {
         // Joins of other rules, and shifts, ask more of a part than its sign.
         let is_sign = |kind: &Kind| match kind {
             Kind::Leaf(_) => true,
@@ -187,14 +187,18 @@ impl Program {
             Kind::Shift(_) => false,
         };
         let by_sign = self.nodes.iter().all(|node| is_sign(&node.kind));
-        self.all_along(parts, seen, ways, |instance, zone, ways| {
+        self.all_along(parts, seen, ways, |negated, instance, zone, ways| {
             let is_all = |found: u8| found.count_ones() as usize == ways.len();
-            let found = match by_sign && instance.placement.shift == 0.0 {
-                true if instance.field.convex() => bits(ways, |way| is_entered(&*instance.field, zone, way)),
-                true => instance.field.enters(zone, ways),
-                false => 0,
+            let (field, Placement { scale, shift, .. }) = (&*instance.field, &instance.placement);
+            let level = if negated { -level } else { level };
+            let level = by_sign.then(|| (level - shift) / scale);
+            let by_beyond = |level: f64| bits(ways, |way| is_entered(field, zone, way, level));
+            let found = level.filter(|_| field.convex()).map_or(0, by_beyond);
+            let found = match level {
+                _ if is_all(found) => found,
+                Some(level) => found | field.enters(zone, ways, level),
+                None => found | field.rises(zone, ways),
             };
-            let found = if is_all(found) { found } else { found | instance.field.rises(zone, ways) };
             if is_all(found) {
                 return found;
             }
@@ -311,7 +315,7 @@ impl Program {
     /// The directions of the world along which all parts rise, throughout its zone and those of the
     /// frames.
     fn all_rise(&self, parts: &[Part], seen: (&[Pieces], &Pieces), ways: &[Way]) -> u8 {
-        self.all_along(parts, seen, ways, |instance, zone, ways| instance.field.rises(zone, ways))
+        self.all_along(parts, seen, ways, |_, instance, zone, ways| instance.field.rises(zone, ways))
     }
 
     /// The directions along which something is true of all parts, as they see them.
@@ -320,7 +324,7 @@ impl Program {
         parts: &[Part],
         (zones, world): (&[Pieces], &Pieces),
         ways: &[Way],
-        holds: impl Fn(&Instance, &Zone, &[Way]) -> u8,
+        holds: impl Fn(bool, &Instance, &Zone, &[Way]) -> u8,
     ) -> u8 {
         // The directions as the frames see them.
         let mut seen: Vec<Vec<Way>> = Vec::with_capacity(self.frames.len());
@@ -356,21 +360,23 @@ impl Program {
             let Instance { frame, to_local, .. } = instance;
             let ways = self.frames.binary_search(frame).map_or(ways, |slot| &seen[slot]);
             let own: Vec<Way> = ways.iter().map(|way| way.mapped(&to_local.matrix3).flip_if(part.negated)).collect();
-            self.zone_in(zones, *frame, world).each(|zone| left &= holds(instance, &zone.mapped(to_local), &own));
+            self.zone_in(zones, *frame, world)
+                .each(|zone| left &= holds(part.negated, instance, &zone.mapped(to_local), &own));
         }
         left
     }
 }
 
-/// Whether a convex leaf is entered along these directions, and not left, throughout a zone: what
-/// is beyond is all inside. (A complement is left by them, so its directions are turned.)
-fn is_entered(field: &dyn AnyField, zone: &Zone, Way { middle, sway }: Way) -> bool {
+/// Whether what is above a level of a convex leaf is entered along these directions, and not left,
+/// throughout a zone: what is beyond is all inside. (A complement is left by them, so its
+/// directions are turned.)
+fn is_entered(field: &dyn AnyField, zone: &Zone, Way { middle, sway }: Way, level: f64) -> bool {
     let scale = zone.radius() / middle.length();
     let [a, b, c] = [zone.axes.x_axis, zone.axes.y_axis, zone.axes.z_axis];
     BEYOND.iter().any(|by| {
         let centre = zone.centre + by * scale * middle;
         // The value of a convex leaf changes by no more than 1 per length unit.
-        let least = zone.slack.length() + by * scale * sway;
+        let least = level + zone.slack.length() + by * scale * sway;
         let is_inside = |p: DVec3| field.value(p.to_array()) > least;
         let layer = |c: DVec3| [a + b, a - b, -a + b, -a - b].into_iter().all(|side| is_inside(centre + side + c));
         if c == DVec3::ZERO { layer(c) } else { layer(c) && layer(-c) }

@@ -279,7 +279,7 @@ fn turned_at_most(program: &Program, cell: &Bounds, normal: DVec3) -> Option<DVe
     let (mut least, mut most) = (0, ANGLES.len());
     while least < most {
         let [low, high] = [least + (most - least) / 3, least + 2 * (most - least) / 3];
-        let found = program.enters(&zone, &[ways(low), ways(high)].concat());
+        let found = program.enters(&zone, &[ways(low), ways(high)].concat(), 0.0);
         if found & 0xf == 0xf {
             most = low;
         } else if found & 0xf0 == 0xf0 {

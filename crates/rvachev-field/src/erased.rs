@@ -169,10 +169,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
         let slopes = self.dual_range(Dual::point(zone.hull())).d;
         bits(ways, |way| way.is_rise(slopes))
     }
-    /// The directions, of up to eight, along which a zone is found to be entered only, whatever the
-    /// value: the sign turns from outside to inside, never back.
-    fn enters(&self, _zone: &Zone, _ways: &[Way]) -> u8 {
-        0
+    /// The directions, of up to eight, along which what is above a level is found to be entered only,
+    /// throughout a zone, whatever the value is elsewhere: it turns from below to above, never back.
+    fn enters(&self, zone: &Zone, ways: &[Way], _level: f64) -> u8 {
+        self.rises(zone, ways)
     }
     /// The direction along which a zone is most likely to be entered, where the surface tells more
     /// than the value.

@@ -273,7 +273,7 @@ fn what_enters_a_zone_does_not_leave_it() {
             let zone = Zone::of_bounds(&Bounds::from_center(centre, half));
             let middle = leaf.inward(&zone).unwrap_or(random.point(1.0).normalize());
             let way = Way { middle, sway: 0.1 };
-            if leaf.enters(&zone, &[way]) == 0 {
+            if leaf.enters(&zone, &[way], 0.0) == 0 {
                 continue;
             }
             found += 1;
@@ -294,7 +294,7 @@ fn what_enters_a_zone_does_not_leave_it() {
     let (plate, turn) = plate();
     let zone = Zone::of_bounds(&Bounds::from_center(turn * DVec3::new(0.1, 0.2, 0.5), DVec3::splat(0.01)));
     let ways = [-DVec3::Z, DVec3::X, DVec3::Z].map(|way| Way { middle: turn * way, sway: 0.0 });
-    assert_eq!(plate.enters(&zone, &ways), 1);
+    assert_eq!(plate.enters(&zone, &ways, 0.0), 1);
 }
 
 #[test]

@@ -58,6 +58,21 @@ impl Cut {
         self.count == 0 && !(self.normal != DVec3::ZERO && self.radius > 0.0 && self.holds(self.middle))
     }
 
+    /// How far from a point it reaches.
+    pub(super) fn farthest_from(&self, point: DVec3) -> f64 {
+        let ends = self.ends[..self.count].as_flattened().iter();
+        let by_sides = ends.fold(0.0f64, |most, end| most.max(end.distance(point)));
+        // The point of the disc's rim that is farthest; any, if all are as far.
+        if self.normal == DVec3::ZERO {
+            return by_sides;
+        }
+        // On the disc's rim, if the farthest point of that is within the triangle; any is if the
+        // point is above its middle.
+        let aside = (self.middle - point).reject_from_normalized(self.normal).try_normalize();
+        let rim = self.middle + self.radius * aside.unwrap_or_else(|| self.normal.any_orthonormal_vector());
+        if self.holds(rim) { by_sides.max(rim.distance(point)) } else { by_sides }
+    }
+
     /// How far it reaches along a direction, from 0.
     pub(super) fn farthest(&self, way: DVec3) -> f64 {
         let ends = self.ends[..self.count].as_flattened().iter();

@@ -36,6 +36,7 @@ mod cut;
 mod disc;
 mod double;
 mod face;
+mod feet;
 mod hierarchy;
 mod inscribed;
 mod layers;

@@ -338,7 +338,11 @@ impl AnyField for SurfaceDistance {
     }
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
-        self.rising(zone, ways)
+        self.rising(zone, ways, None)
+    }
+
+    fn enters(&self, zone: &Zone, ways: &[Way], level: f64) -> u8 {
+        self.rising(zone, ways, Some(level))
     }
 
     fn inward(&self, zone: &Zone) -> Option<DVec3> {

@@ -215,13 +215,18 @@ impl AnyField for MeshLeaf {
 
     /// Along a line the winding number grows where it passes triangles from in front, and changes
     /// nowhere else.
-    fn enters(&self, zone: &Zone, ways: &[Way]) -> u8 {
-        let Some(normals) = self.normals_in(zone) else { return 0 };
-        let enters = |way: Way| {
+    fn enters(&self, zone: &Zone, ways: &[Way], level: f64) -> u8 {
+        let normals = if level == 0.0 { self.normals_in(zone) } else { None };
+        let is_entered = |way: Way| {
             let least = way.sway + ROUNDING * way.middle.length();
-            normals.iter().all(|normal| -normal.dot(way.middle) > least)
+            normals.as_ref().is_some_and(|normals| normals.iter().all(|normal| -normal.dot(way.middle) > least))
         };
-        bits(ways, enters)
+        let found = bits(ways, is_entered);
+        if self.is_open() || found == bits(ways, |_| true) {
+            found
+        } else {
+            found | self.distance.enters(zone, ways, level)
+        }
     }
 
     fn inward(&self, zone: &Zone) -> Option<DVec3> {
