@@ -12,13 +12,14 @@
 //! Where it is asked how a level is passed, feet that are farther than that do not count.
 
 use glam::DVec3;
+use rvachev_num::Interval;
 
 use super::cut::Cut;
 use super::face::{SLACK, double};
 use super::hierarchy::PARENT;
 use super::normals::Part;
 use super::{Patches, SurfaceDistance};
-use crate::{Way, Zone};
+use crate::{Way, Zone, dot};
 
 /// More patches than this turn too much to be asked.
 const MANY: usize = 96;
@@ -68,6 +69,36 @@ impl SurfaceDistance {
         }
         patches.retain(|patch| self.patches.spread(*patch, &feet, foot.point).is_some());
         Some((feet, patches))
+    }
+}
+
+impl SurfaceDistance {
+    /// How near, and how far, points of a zone are that are on one side of the surface, by where
+    /// feet are and by the normals there. Near, less than nothing is not told.
+    pub(super) fn change(&self, zone: &Zone) -> Option<[f64; 2]> {
+        let (feet, patches) = self.feet(zone, &[], None)?;
+        let distance = self.patches.distance(feet.centre)?;
+        let Zone { axes, slack, .. } = feet.zone;
+        let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
+        // |x − f|² ≥ |g − c|² − 2 (x − c)·(f − c)
+        let mut most = [0.0f64; 3];
+        let mut slopes: Option<[Interval; 3]> = None;
+        for patch in patches {
+            let part = Part::whole(patch);
+            let Some((cut, off)) = self.patches.cut(&part, &feet) else { continue };
+            for (most, axis) in most.iter_mut().zip(axes) {
+                *most = most.max(cut.farthest(axis).max(cut.farthest(-axis)) + off * axis.length());
+            }
+            let own = self.patches.slopes_of(&part, self.flat);
+            slopes = Some(slopes.map_or(own, |all| [0, 1, 2].map(|axis| all[axis].hull(own[axis]))));
+        }
+        let square = distance * distance - 2.0 * (most.iter().sum::<f64>() + slack.length() * feet.reach);
+        // Between unit normals others are shorter, and slopes are not.
+        let slopes = slopes?;
+        let least = DVec3::from_array(slopes.map(|slope| slope.lo().max(-slope.hi()).max(0.0))).length();
+        let along = |axis: DVec3| dot(slopes, axis.to_array().map(Interval::point)).magnitude();
+        let by_normals = (axes.into_iter().map(along).sum::<f64>() + slack.length()) / least;
+        Some([square.max(0.0).sqrt(), distance + by_normals])
     }
 }
 

@@ -70,7 +70,7 @@ impl Patches {
     }
 
     /// A box of the vectors against the normals of a part of a patch.
-    fn slopes_of(&self, part: &Part, flat: Option<usize>) -> [Interval; 3] {
+    pub(super) fn slopes_of(&self, part: &Part, flat: Option<usize>) -> [Interval; 3] {
         let [a, b, c] = part.corners;
         let all = [a, b, c, middle(a, b), middle(b, c), middle(c, a)];
         let places = if self.quadratics.is_empty() { &all[..1] } else { &all[..] };

@@ -181,16 +181,15 @@ impl SurfaceDistance {
         let foot = self.patches.nearest(self.flattened(zone.centre))?;
         let slack = self.slack(zone, foot.distance) + more;
         let within_ball = foot.distance - radius - slack;
+        // No point is farther from the surface than from that one point of it.
+        let far = (foot.distance + radius).min(self.farthest(zone, foot.point));
         // A rectangle along a face is as far from it all over.
         let is_flat = zone.is_flat();
-        let is_asked = is_flat || within_ball <= 0.0 && self.side.is_none();
+        let [low, high] = if is_flat { self.change(zone).unwrap_or([0.0, far]) } else { [0.0, far] };
+        let within = within_ball.max(low - slack);
+        let is_asked = is_flat || within <= 0.0 && self.side.is_none();
         let apart = if is_asked { self.apart(zone, slack) } else { 0.0 };
-        // No point is farther from the surface than from that one point of it.
-        let mut far = (foot.distance + radius).min(self.farthest(zone, foot.point));
-        if is_flat {
-            far = far.min(self.patches.beside(&self.across(zone)).unwrap_or(far));
-        }
-        Some([if apart > 0.0 { apart.max(within_ball) } else { within_ball }, far + slack])
+        Some([if apart > 0.0 { apart.max(within) } else { within }, far.min(high) + slack])
     }
 
     /// How far a point of the surface is from points of a zone at most.
