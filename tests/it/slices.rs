@@ -328,7 +328,7 @@ fn planes_in_and_beside_measured_faces_are_told() {
     let tower = Solid::cuboid([2.0, 1.6, 1.0]) | Solid::cuboid([0.7, 0.7, 2.0]).translate([0.4, 0.2, 0.3]);
     let shell = tower.shell(0.05);
     // The roof of the cavity is at 1.25.
-    for (height, area) in [(1.25, 0.49), (1.247, 0.13), (1.249, 0.13)] {
+    for (height, area) in [(1.25, 0.49), (1.247, 0.13), (1.249, 0.13), (1.2497, 0.13)] {
         let contours = cut(&shell, height, 1e-3);
         assert_eq!(contours.unresolved(), 0, "at {height}");
         assert!((contours.area() - area).abs() < 1e-4, "at {height}: {}", contours.area());
@@ -338,6 +338,20 @@ fn planes_in_and_beside_measured_faces_are_told() {
     let contours = cut(&box_moved_out, 0.01, 1e-3);
     assert_eq!(contours.unresolved(), 0);
     assert!((contours.area() - (4.64 + PI * 0.0064)).abs() < 1e-3, "{}", contours.area());
+    // The floor of a bottle's cavity is at -3.6: on it, feet leap from the floor to the wall.
+    let bottle = (Solid::cylinder(5.5, 9.0) | Solid::cylinder(2.5, 6.0).translate([0.0, 0.0, 6.0])).shell(0.9);
+    for height in [-3.6, -3.5999, -3.599, -3.59] {
+        let contours = cut(&bottle, height, 1e-3);
+        assert_eq!(contours.unresolved(), 0, "at {height}");
+        let area = PI * (5.5f64.powi(2) - 4.6f64.powi(2));
+        assert!((contours.area() - area).abs() < 1e-3, "at {height}: {}", contours.area());
+    }
+    // A fillet leaves a face at no angle: on it some squares are told by samples.
+    let (plate, fillet) = (Solid::cuboid([2.0, 1.6, 1.0]), Blend::Fillet { radius: 0.15 });
+    let post = plate.union_with(Solid::cylinder(0.4, 2.4), fillet);
+    assert_eq!(cut(&post, 0.501, 1e-3).unresolved(), 0);
+    let unresolved = cut(&post, 0.5, 1e-3).unresolved();
+    assert!(unresolved < 1500, "{unresolved}");
 }
 
 /// The face of a chamfer jumps where an operand's normal does: the contour goes along the jump.

@@ -34,8 +34,8 @@ const SAMPLED: [u32; 2] = [1 << (DEEPEST - 8), 1 << (DEEPEST - 12)];
 /// Steeper than this ranges of slopes tell nothing: that of a root is held there where it has none.
 const STEEP: f64 = 1e9;
 
-/// Ranges that are still so wide, over half a square, in proportion, do not become narrower soon.
-const STUCK: f64 = 0.9;
+/// Ranges that are wider than so many times what samples differ by do not become narrower soon.
+const WIDE: f64 = 4.0;
 
 /// Where, in a square, and the least cosine of the angle between a slope there and their mean.
 const SAMPLES: [[f64; 2]; 5] = [[0.5, 0.5], [0.02, 0.03], [0.97, 0.02], [0.98, 0.97], [0.03, 0.98]];
@@ -219,11 +219,12 @@ impl Section {
         let slopes = samples.map(|p| self.gradient(filling, p).normalize_or_zero());
         let way = slopes.iter().sum::<DVec2>().try_normalize()?;
         let is_way = slopes.iter().all(|slope| slope.dot(way) > STRAIGHT);
-        let width = |part: f64| {
-            let (middle, half) = (square.low + 0.5 * square.side, 0.5 * part * square.side);
-            program.range_zone(&self.zone(middle - half, middle + half, [0.0; 2])).width()
+        let is_last = || {
+            let values = samples.map(|p| self.value(filling, p));
+            let [low, high] = [f64::min, f64::max].map(|of| values.into_iter().reduce(of).unwrap_or(0.0));
+            let range = program.range_zone(&self.zone(square.low, square.low + square.side, [0.0; 2]));
+            range.width() > WIDE * (high - low)
         };
-        let is_last = || width(0.5) > STUCK * width(1.0);
         (is_way && (square.size <= least || is_last())).then_some(Entry { way, by_samples: true })
     }
 

@@ -146,6 +146,23 @@ impl Patches {
         Some(nearest * unit).filter(|nearest| nearest.is_finite())
     }
 
+    /// How far points of a zone are from the patches at most, as the patch that is nearest to its
+    /// middle tells, if all are above it.
+    pub(super) fn beside(&self, zone: &Zone) -> Option<f64> {
+        let seen = self.seen(zone);
+        let at = self.search_one(seen.centre.to_array()).which as usize;
+        let (face, sides) = self.at(at)?;
+        let [a, e, f] = [double(face.a), double(sides.e), double(sides.f)];
+        let normal = e.cross(f).try_normalize()?;
+        let is_within = |(from, along): (DVec3, DVec3)| {
+            let inwards = normal.cross(along);
+            inwards.dot(seen.centre - from) >= seen.reach(inwards)
+        };
+        let is_above = [(a, e), (a + e, f - e), (a + f, -f)].into_iter().all(is_within);
+        let most = normal.dot(a - seen.centre).abs() + seen.reach(normal) + f64::from(face.sag);
+        is_above.then_some(most * self.frame.unit)
+    }
+
     /// How far a patch is, at least.
     pub(super) fn patch_apart(&self, seen: &Seen, at: usize) -> f64 {
         let Some((face, sides)) = self.at(at) else { return 0.0 };

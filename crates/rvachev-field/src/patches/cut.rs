@@ -104,13 +104,16 @@ mod tests {
             let all = (0..=STEPS).flat_map(|i| (0..=STEPS - i).map(move |j| [i, j].map(|k| k as f64 / STEPS as f64)));
             let [a, b, c] = corners;
             let inside = all.map(|[s, t]| a + s * (b - a) + t * (c - a)).filter(|p| p.length() <= 0.6);
-            let farthest = inside.map(|p| p.dot(way)).fold(f64::NEG_INFINITY, f64::max);
+            let farthest = inside.clone().map(|p| p.dot(way)).fold(f64::NEG_INFINITY, f64::max);
             if cut.is_empty() {
                 assert_eq!(farthest, f64::NEG_INFINITY, "{corners:?}");
                 empty += 1;
             } else if farthest > f64::NEG_INFINITY {
                 let off = cut.farthest(way) - farthest;
                 assert!(off > -1e-12 && off < 0.03, "{corners:?} {way} {off}");
+                let distance = inside.clone().map(|p| p.distance(way)).fold(0.0, f64::max);
+                let off = cut.farthest_from(way) - distance;
+                assert!(off > -1e-12 && off < 0.03, "{corners:?} from {way} {off}");
                 full += 1;
             }
         }

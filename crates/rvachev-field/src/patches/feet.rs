@@ -17,8 +17,7 @@ use rvachev_num::Interval;
 use super::cut::Cut;
 use super::face::{SLACK, double};
 use super::hierarchy::PARENT;
-use super::normals::Part;
-use super::{Patches, SurfaceDistance};
+use super::{Foot, Patches, SurfaceDistance};
 use crate::{Way, Zone, dot};
 
 /// More patches than this turn too much to be asked.
@@ -26,6 +25,9 @@ const MANY: usize = 96;
 
 /// So often the ball of feet is made smaller.
 const ROUNDS: usize = 4;
+
+/// Rectangles reach less far than this part of their radius towards the surface there.
+const ALONG: f64 = 0.5;
 
 /// Where points are whose feet are looked for.
 #[derive(Clone, Copy)]
@@ -41,68 +43,89 @@ pub(super) struct Feet<'a> {
 }
 
 impl SurfaceDistance {
-    /// Where the feet of a zone's points may be, and on which patches; only of those that are no
+    /// Where the feet of a zone's points may be, given that of its centre, and on which patches; only of those that are no
     /// farther from their feet than a level, if there is one.
-    pub(super) fn feet<'a>(&self, zone: &Zone, ways: &'a [Way], level: Option<f64>) -> Option<(Feet<'a>, Vec<usize>)> {
+    pub(super) fn feet<'a>(
+        &self,
+        zone: &Zone,
+        foot: Foot,
+        ways: &'a [Way],
+        level: Option<f64>,
+    ) -> Option<(Feet<'a>, Vec<Part>)> {
         if !zone.is_finite() {
             return None;
         }
         let centre = self.flattened(zone.centre);
-        let foot = self.patches.nearest(centre)?;
         let (radius, slack) = (self.radius(zone), self.slack(zone, foot.distance));
         // Only on one side of the surface is it known which way the foot is.
         let side = if foot.distance > radius + slack { self.sign(zone.centre.to_array()).signum() } else { 0.0 };
         let level = level.filter(|level| level * side > 0.0).map_or(f64::INFINITY, |level| level.abs() + slack);
         let reach = (foot.distance + 2.0 * radius + slack).min(level + radius);
         let mut feet = Feet { centre, zone: self.across(zone), reach, ways, side, flat: self.flat };
-        let mut patches = self.patches.beneath(&feet)?;
         let seen = self.patches.seen(&feet.zone);
-        patches.retain(|patch| self.patches.patch_apart(&seen, *patch) * self.patches.unit() < level);
+        let beneath = self.patches.beneath(&feet)?.into_iter();
+        let near = beneath.filter(|patch| self.patches.patch_apart(&seen, *patch) * self.patches.unit() < level);
+        let mut patches: Vec<Part> = near.map(|patch| self.patches.part(patch, WHOLE, 0, centre)).collect();
+        let (least, own) = (foot.distance + slack, foot.point - centre);
         for _ in 0..ROUNDS {
-            let far = patches.iter().filter_map(|patch| self.patches.spread(*patch, &feet, foot.point));
-            let least = foot.distance + slack;
-            let nearer = (least * least + 2.0 * radius * (far.fold(0.0, f64::max) + slack)).sqrt();
+            let far = patches.iter().filter_map(|part| feet.spread(part, own)).fold(0.0, f64::max);
+            let nearer = (least * least + 2.0 * radius * (far + slack)).sqrt();
             if nearer >= feet.reach {
                 break;
             }
             feet.reach = nearer;
         }
-        patches.retain(|patch| self.patches.spread(*patch, &feet, foot.point).is_some());
+        patches.retain(|part| feet.cut(part).is_some());
         Some((feet, patches))
     }
-}
 
-impl SurfaceDistance {
-    /// How near, and how far, points of a zone are that are on one side of the surface, by where
-    /// feet are and by the normals there. Near, less than nothing is not told.
-    pub(super) fn change(&self, zone: &Zone) -> Option<[f64; 2]> {
-        let (feet, patches) = self.feet(zone, &[], None)?;
-        let distance = self.patches.distance(feet.centre)?;
-        let Zone { axes, slack, .. } = feet.zone;
+    /// How near, at least, and how far points of a rectangle are, by where feet are, by the planes of
+    /// patches and by their normals. Of one that may meet the surface it is not told how near.
+    pub(super) fn over_rectangle(&self, zone: &Zone, foot: Foot) -> Option<[f64; 2]> {
+        let Zone { axes, slack, .. } = self.across(zone);
         let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
-        // |x − f|² ≥ |g − c|² − 2 (x − c)·(f − c)
-        let mut most = [0.0f64; 3];
+        // The ball about it tells about as much, unless it is along the surface.
+        let away = (self.flattened(zone.centre) - foot.point).try_normalize().unwrap_or(foot.normal);
+        let across = axes.into_iter().map(|axis| axis.dot(away).abs()).sum::<f64>();
+        if across > ALONG * self.radius(zone) {
+            return None;
+        }
+        let (feet, patches) = self.feet(zone, foot, &[], None)?;
+        let (distance, seen) = (foot.distance, self.patches.seen(&feet.zone));
+        let mut near = f64::INFINITY;
         let mut slopes: Option<[Interval; 3]> = None;
-        for patch in patches {
-            let part = Part::whole(patch);
-            let Some((cut, off)) = self.patches.cut(&part, &feet) else { continue };
-            for (most, axis) in most.iter_mut().zip(axes) {
-                *most = most.max(cut.farthest(axis).max(cut.farthest(-axis)) + off * axis.length());
-            }
-            let own = self.patches.slopes_of(&part, self.flat);
+        for part in &patches {
+            let Some(cut) = feet.cut(part) else { continue };
+            // |x − f|² ≥ |g − c|² − 2 (x − c)·(f − c)
+            let most = |axis: DVec3| cut.farthest(axis).max(cut.farthest(-axis)) + part.off * axis.length();
+            let most = axes.into_iter().map(most).sum::<f64>() + slack.length() * feet.reach;
+            let by_place = (distance * distance - 2.0 * most).max(0.0).sqrt();
+            near = near.min(by_place.max(self.patches.patch_apart(&seen, part.patch) * self.patches.unit()));
+            let own = self.patches.slopes_of(part, self.flat);
             slopes = Some(slopes.map_or(own, |all| [0, 1, 2].map(|axis| all[axis].hull(own[axis]))));
         }
-        let square = distance * distance - 2.0 * (most.iter().sum::<f64>() + slack.length() * feet.reach);
         // Between unit normals others are shorter, and slopes are not.
         let slopes = slopes?;
         let least = DVec3::from_array(slopes.map(|slope| slope.lo().max(-slope.hi()).max(0.0))).length();
         let along = |axis: DVec3| dot(slopes, axis.to_array().map(Interval::point)).magnitude();
         let by_normals = (axes.into_iter().map(along).sum::<f64>() + slack.length()) / least;
-        Some([square.max(0.0).sqrt(), distance + by_normals])
+        let beside = self.patches.beside(&feet.zone).unwrap_or(f64::INFINITY);
+        Some([if near > 0.0 { near } else { f64::NEG_INFINITY }, beside.min(distance + by_normals)])
     }
 }
 
 impl Feet<'_> {
+    /// A part of a patch as far as it is as near as feet are; nothing if none of it is.
+    pub(super) fn cut(&self, part: &Part) -> Option<Cut> {
+        let cut = Cut::new(part.places, self.reach + part.off);
+        (!cut.is_empty()).then_some(cut)
+    }
+
+    /// How far feet on a part of a patch are from a point at most.
+    fn spread(&self, part: &Part, point: DVec3) -> Option<f64> {
+        Some(self.cut(part)?.farthest_from(point) + part.off)
+    }
+
     /// Whether the value rises along directions wherever the foot is, on a triangle or this near to
     /// it.
     pub(super) fn lead(&self, triangle: &Cut, sag: f64, mut way: Way) -> bool {
@@ -155,23 +178,38 @@ impl Patches {
         beside.max(above) > reach + f64::from(face.sag) + SLACK
     }
 
-    /// A part of a patch as far as it is as near as feet are, and how far off that may be; nothing
-    /// if none of it is.
-    pub(super) fn cut(&self, part: &Part, feet: &Feet<'_>) -> Option<(Cut, f64)> {
-        let corners = part.corners.map(|[s, t]| self.frame.outward(self.point_and_normal(part.patch, s, t).0));
-        let off = (self.sag(part) + SLACK) * self.frame.unit;
-        let cut = Cut::new(corners.map(|corner| corner - feet.centre), feet.reach + off);
-        (!cut.is_empty()).then_some((cut, off))
+    /// A part of a patch, of these corners, seen from a point.
+    pub(super) fn part(&self, patch: usize, corners: [[f64; 2]; 3], depth: u32, centre: DVec3) -> Part {
+        let place = |[s, t]: [f64; 2]| self.frame.outward(self.point_and_normal(patch, s, t).0) - centre;
+        let sag = f64::from(self.faces[patch].sag) / f64::from(1 << (2 * depth));
+        Part { patch, corners, depth, places: corners.map(place), off: (sag + SLACK) * self.frame.unit }
     }
+}
 
-    /// How far a part of a patch is off the triangle of its corners, in the surface's frame.
-    pub(super) fn sag(&self, part: &Part) -> f64 {
-        f64::from(self.faces[part.patch].sag) / f64::from(1 << (2 * part.depth))
-    }
+/// A part of a patch: halved so often along its sides.
+pub(super) struct Part {
+    pub(super) patch: usize,
+    /// By the patch's coordinates.
+    pub(super) corners: [[f64; 2]; 3],
+    pub(super) depth: u32,
+    /// The corners, from the zone's centre.
+    places: [DVec3; 3],
+    /// How far it is off the triangle of its corners.
+    pub(super) off: f64,
+}
 
-    /// How far feet on a patch are from a point at most.
-    fn spread(&self, patch: usize, feet: &Feet<'_>, point: DVec3) -> Option<f64> {
-        let (cut, off) = self.cut(&Part::whole(patch), feet)?;
-        Some(cut.farthest_from(point - feet.centre) + off)
+/// All of a patch.
+const WHOLE: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+
+impl Part {
+    /// The corners of its quarters.
+    pub(super) fn quarters(&self) -> [[[f64; 2]; 3]; 4] {
+        let [a, b, c] = self.corners;
+        let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]]
     }
+}
+
+pub(super) fn middle([s, t]: [f64; 2], [u, v]: [f64; 2]) -> [f64; 2] {
+    [0.5 * (s + u), 0.5 * (t + v)]
 }

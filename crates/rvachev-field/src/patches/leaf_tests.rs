@@ -248,6 +248,60 @@ fn along_ways_that_are_told_values_rise() {
     assert!(told.iter().all(|told| *told > 1000), "{told:?}");
 }
 
+/// What is above a level is not left along ways that are told, whatever the value is elsewhere.
+#[test]
+fn along_ways_that_are_told_a_level_is_entered() {
+    let (mut random, mut told, mut more) = (Random(31), 0, 0);
+    for field in [ball(16), slab(DVec3::new(0.7, 0.5, 0.3))] {
+        for number in 0..6000 {
+            let centre = random.point(1.4);
+            let half = random.point(f64::powi(0.5, 2 + number % 5)).abs()
+                * if number % 2 == 0 { DVec3::ONE } else { DVec3::new(1.0, 1.0, 0.0) };
+            let zone = Zone::of_bounds(&Bounds::from_center(centre, 2.0 * half));
+            let value = |p: DVec3| field.value(p.to_array());
+            // Between the values at two points of the zone.
+            let level = 0.5 * (value(centre + half * random.point(1.0)) + value(centre + half * random.point(1.0)));
+            let slope = DVec3::from_array(field.dual(Dual::point(centre.to_array())).d);
+            let way = Way { middle: slope + random.point(0.7), sway: 0.0 };
+            if field.enters(&zone, &[way], level) == 0 {
+                continue;
+            }
+            told += 1;
+            more += usize::from(field.rises(&zone, &[way]) == 0);
+            let mut p = centre + half * random.point(1.0);
+            let mut last = f64::NEG_INFINITY;
+            let step = 0.1 * half.max_element() * way.middle.normalize();
+            for _ in 0..10 {
+                if ((p - centre).abs() - half).max_element() > 1e-12 {
+                    break;
+                }
+                let off = 2.0 * field.error() + 1e-6;
+                assert!(
+                    last < level + off || value(p) > level - off,
+                    "{way:?} at {p}, {last} to {}, {level}",
+                    value(p)
+                );
+                last = last.max(value(p));
+                p += step;
+            }
+        }
+    }
+    assert!(told > 1500 && more > 100, "{told} {more}");
+}
+
+/// Beside a corner of a room feet leap from the floor to the wall, and above a level there is only
+/// the wall.
+#[test]
+fn feet_that_are_farther_than_a_level_do_not_count() {
+    let field = slab(DVec3::new(0.7, 0.5, 0.3));
+    // Within the slab the level .1 is a box; near its lower edge, a little above its floor.
+    let zone = Zone::of_bounds(&Bounds::from_center(DVec3::new(0.0, 0.4, -0.1999), DVec3::new(0.02, 0.02, 0.0)));
+    let inwards = Way { middle: DVec3::NEG_Y, sway: 0.0 };
+    assert_eq!(field.enters(&zone, &[inwards], 0.1), 1);
+    // Below the floor it is neither entered nor left.
+    assert_eq!(field.rises(&zone, &[Way { middle: DVec3::Y, sway: 0.0 }]), 0);
+}
+
 /// Feet on an edge are between two faces, but away from either one's normal.
 #[test]
 fn beside_edges_ways_are_told_by_where_feet_are() {

@@ -14,7 +14,7 @@
 use glam::DVec3;
 use rvachev_num::Interval;
 
-use super::feet::Feet;
+use super::feet::{Feet, Part, middle};
 use super::{Patches, SurfaceDistance};
 use crate::{Way, Zone, bits};
 
@@ -27,13 +27,16 @@ const BETWEEN: f64 = 0.25;
 impl SurfaceDistance {
     /// The directions along which the value rises all over a zone, or where it is a level at least.
     pub(super) fn rising(&self, zone: &Zone, ways: &[Way], level: Option<f64>) -> u8 {
-        self.feet(zone, ways, level).map_or(0, |(feet, patches)| self.patches.rising_from(&feet, patches))
+        let foot = self.patches.nearest(self.flattened(zone.centre));
+        let feet = foot.and_then(|foot| self.feet(zone, foot, ways, level));
+        feet.map_or(0, |(feet, patches)| self.patches.rising_from(&feet, &patches))
     }
 
     /// The middle of those against the normals of all patches that feet may be on.
     pub(super) fn inward_over(&self, zone: &Zone) -> Option<DVec3> {
-        let (_, patches) = self.feet(zone, &[], None)?;
-        let all = patches.into_iter().map(|patch| self.patches.slopes_of(&Part::whole(patch), self.flat));
+        let foot = self.patches.nearest(self.flattened(zone.centre))?;
+        let (_, patches) = self.feet(zone, foot, &[], None)?;
+        let all = patches.iter().map(|part| self.patches.slopes_of(part, self.flat));
         all.reduce(|all, own| [0, 1, 2].map(|axis| all[axis].hull(own[axis])))
             .and_then(|slopes| DVec3::from_array(slopes.map(Interval::mid)).try_normalize())
     }
@@ -41,10 +44,10 @@ impl SurfaceDistance {
 
 impl Patches {
     /// The directions along which the distance rises, on the feet's side, wherever these are.
-    fn rising_from(&self, feet: &Feet<'_>, patches: Vec<usize>) -> u8 {
+    fn rising_from(&self, feet: &Feet<'_>, patches: &[Part]) -> u8 {
         let (mut left, mut count) = (bits(feet.ways, |_| true), 0);
         for patch in patches {
-            let Some(found) = self.rising_by(Part::whole(patch), feet, left) else { continue };
+            let Some(found) = self.rising_by(patch, feet, left) else { continue };
             (left, count) = (left & found, count + 1);
             if left == 0 {
                 return 0;
@@ -54,18 +57,19 @@ impl Patches {
     }
 
     /// The same by a part of a patch, of some of the ways; nothing if no foot is there.
-    fn rising_by(&self, part: Part, feet: &Feet<'_>, asked: u8) -> Option<u8> {
-        let (cut, off) = self.cut(&part, feet)?;
-        let by_place = asked & bits(feet.ways, |way| feet.lead(&cut, off, way));
+    fn rising_by(&self, part: &Part, feet: &Feet<'_>, asked: u8) -> Option<u8> {
+        let cut = feet.cut(part)?;
+        let by_place = asked & bits(feet.ways, |way| feet.lead(&cut, part.off, way));
         if by_place == asked {
             return Some(asked);
         }
-        let slopes = self.slopes_of(&part, feet.flat);
+        let slopes = self.slopes_of(part, feet.flat);
         let found = by_place | asked & bits(feet.ways, |way| way.is_rise(slopes));
-        if found == asked || self.sag(&part) == 0.0 || part.depth == DEEPEST {
+        if found == asked || self.faces[part.patch].is_flat() || part.depth == DEEPEST {
             return Some(found);
         }
-        let parts = part.quarters().into_iter().filter_map(|quarter| self.rising_by(quarter, feet, asked & !found));
+        let quarters = part.quarters().map(|corners| self.part(part.patch, corners, part.depth + 1, feet.centre));
+        let parts = quarters.iter().filter_map(|quarter| self.rising_by(quarter, feet, asked & !found));
         Some(found | parts.reduce(|all, own| all & own)?)
     }
 
@@ -84,32 +88,4 @@ impl Patches {
         }
         slopes
     }
-}
-
-/// A part of a patch: halved so often along its sides.
-pub(super) struct Part {
-    pub(super) patch: usize,
-    /// By the patch's coordinates.
-    pub(super) corners: [[f64; 2]; 3],
-    pub(super) depth: u32,
-}
-
-impl Part {
-    pub(super) fn whole(patch: usize) -> Part {
-        Part { patch, corners: [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], depth: 0 }
-    }
-
-    fn quarters(&self) -> [Part; 4] {
-        let [a, b, c] = self.corners;
-        let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
-        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]].map(|corners| Part {
-            patch: self.patch,
-            corners,
-            depth: self.depth + 1,
-        })
-    }
-}
-
-fn middle([s, t]: [f64; 2], [u, v]: [f64; 2]) -> [f64; 2] {
-    [0.5 * (s + u), 0.5 * (t + v)]
 }

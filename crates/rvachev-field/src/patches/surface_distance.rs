@@ -184,12 +184,13 @@ impl SurfaceDistance {
         // No point is farther from the surface than from that one point of it.
         let far = (foot.distance + radius).min(self.farthest(zone, foot.point));
         // A rectangle along a face is as far from it all over.
-        let is_flat = zone.is_flat();
-        let [low, high] = if is_flat { self.change(zone).unwrap_or([0.0, far]) } else { [0.0, far] };
-        let within = within_ball.max(low - slack);
-        let is_asked = is_flat || within <= 0.0 && self.side.is_none();
+        let told = if zone.is_flat() { self.over_rectangle(zone, foot) } else { None };
+        if let Some([low, high]) = told {
+            return Some([within_ball.max(low - slack), far.min(high) + slack]);
+        }
+        let is_asked = zone.is_flat() || within_ball <= 0.0 && self.side.is_none();
         let apart = if is_asked { self.apart(zone, slack) } else { 0.0 };
-        Some([if apart > 0.0 { apart.max(within) } else { within }, far.min(high) + slack])
+        Some([if apart > 0.0 { apart.max(within_ball) } else { within_ball }, far + slack])
     }
 
     /// How far a point of the surface is from points of a zone at most.
