@@ -79,7 +79,14 @@ impl Subject<'_> {
     fn slice(&mut self) -> Result<(), Fault> {
         let through = self.random.point_in(&self.frame);
         let tilted = Plane::new(through, self.random.direction());
-        for plane in [Plane::xy(through.z), tilted] {
+        // In a face, where what a ray from above hits is flat.
+        let above = through.with_z(self.frame.max.z + self.size);
+        let hit = match self.solid.raycast_all_with(&[(above, DVec3::NEG_Z)], &self.run) {
+            Err(PrepareError::Cancelled(_)) => return Ok(()),
+            hits => hits.unwrap()[0],
+        };
+        let in_face = hit.map(|hit| Plane::xy(hit.point.z));
+        for plane in [Plane::xy(through.z), tilted].into_iter().chain(in_face) {
             let corners = self.frame.corners().map(|corner| plane.coordinates(corner));
             let fold = |of: fn(DVec2, DVec2) -> DVec2| corners.into_iter().reduce(of).unwrap();
             let margin = DVec2::splat(0.05 * self.size);
@@ -97,7 +104,12 @@ impl Subject<'_> {
             for _ in 0..150 {
                 let p = region.min + self.random.vector(0.0, 1.0).truncate() * (region.max - region.min);
                 let away = contours.lines().iter().map(|line| distance(line, p)).fold(f64::INFINITY, f64::min);
-                let expected = self.inside(plane.point(p));
+                // A little above: what is flush with the plane counts as it is there.
+                let above = |part: f64| self.inside(plane.point(p) + part * self.size * plane.normal());
+                let expected = above(1e-5);
+                if above(0.0) != expected || above(1e-4) != expected {
+                    continue;
+                }
                 let enclosed = contours.lines().iter().filter(|line| winds(line, p)).count() % 2 == 1;
                 let is_right = away < 3.0 * tolerance || enclosed == expected;
                 if !is_right && spare > 0 {
