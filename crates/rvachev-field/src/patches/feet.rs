@@ -79,12 +79,16 @@ impl SurfaceDistance {
         Some((feet, patches))
     }
 
-    /// How near, at least, and how far points of a rectangle are, by where feet are, by the planes of
-    /// patches and by their normals. Of one that may meet the surface it is not told how near.
+    /// How near, at least, and how far points of a rectangle along the surface are, by where feet
+    /// are, by the planes of patches and by their normals. Of one that may meet the surface it is
+    /// not told how near.
     pub(super) fn over_rectangle(&self, zone: &Zone, foot: Foot) -> Option<[f64; 2]> {
         let Zone { axes, slack, .. } = self.across(zone);
         let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
-        // The ball about it tells about as much, unless it is along the surface.
+        if axes.iter().filter(|axis| **axis == DVec3::ZERO).count() != 1 {
+            return None;
+        }
+        // Of others the ball about it tells about as much.
         let away = (self.flattened(zone.centre) - foot.point).try_normalize().unwrap_or(foot.normal);
         let across = axes.into_iter().map(|axis| axis.dot(away).abs()).sum::<f64>();
         if across > ALONG * self.radius(zone) {
@@ -109,8 +113,7 @@ impl SurfaceDistance {
         let least = DVec3::from_array(slopes.map(|slope| slope.lo().max(-slope.hi()).max(0.0))).length();
         let along = |axis: DVec3| dot(slopes, axis.to_array().map(Interval::point)).magnitude();
         let by_normals = (axes.into_iter().map(along).sum::<f64>() + slack.length()) / least;
-        let beside = self.patches.beside(&feet.zone).unwrap_or(f64::INFINITY);
-        Some([if near > 0.0 { near } else { f64::NEG_INFINITY }, beside.min(distance + by_normals)])
+        Some([if near > 0.0 { near } else { f64::NEG_INFINITY }, distance + by_normals])
     }
 }
 

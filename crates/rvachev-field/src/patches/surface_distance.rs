@@ -182,13 +182,15 @@ impl SurfaceDistance {
         let slack = self.slack(zone, foot.distance) + more;
         let within_ball = foot.distance - radius - slack;
         // No point is farther from the surface than from that one point of it.
-        let far = (foot.distance + radius).min(self.farthest(zone, foot.point));
-        // A rectangle along a face is as far from it all over.
-        let told = if zone.is_flat() { self.over_rectangle(zone, foot) } else { None };
-        if let Some([low, high]) = told {
+        let mut far = (foot.distance + radius).min(self.farthest(zone, foot.point));
+        let is_flat = zone.is_flat();
+        if is_flat {
+            far = far.min(self.patches.beside(&self.across(zone)).unwrap_or(far));
+        }
+        if let Some([low, high]) = self.over_rectangle(zone, foot) {
             return Some([within_ball.max(low - slack), far.min(high) + slack]);
         }
-        let is_asked = zone.is_flat() || within_ball <= 0.0 && self.side.is_none();
+        let is_asked = is_flat || within_ball <= 0.0 && self.side.is_none();
         let apart = if is_asked { self.apart(zone, slack) } else { 0.0 };
         Some([if apart > 0.0 { apart.max(within_ball) } else { within_ball }, far + slack])
     }
