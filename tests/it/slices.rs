@@ -338,6 +338,10 @@ fn planes_in_and_beside_measured_faces_are_told() {
     let contours = cut(&box_moved_out, 0.01, 1e-3);
     assert_eq!(contours.unresolved(), 0);
     assert!((contours.area() - (4.64 + PI * 0.0064)).abs() < 1e-3, "{}", contours.area());
+    // Beside the corners of a hexagon's hole its inner face is out of sight.
+    let hole = Profile::regular_polygon(6, 1.0).extrude(1.0);
+    let contours = cut(&(Solid::cuboid([3.0, 3.0, 0.7]) - hole).shell(0.08), 0.0137, 1e-2);
+    assert_eq!(contours.unresolved(), 0);
     // The floor of a bottle's cavity is at -3.6: on it, feet leap from the floor to the wall.
     let bottle = (Solid::cylinder(5.5, 9.0) | Solid::cylinder(2.5, 6.0).translate([0.0, 0.0, 6.0])).shell(0.9);
     for height in [-3.6, -3.5999, -3.599, -3.59] {

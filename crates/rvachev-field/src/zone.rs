@@ -338,12 +338,13 @@ pub(super) fn concave_range(
 ) -> Interval {
     let along = zone.axes.transpose() * gradient;
     let rise = along.abs().element_sum() + gradient.abs().dot(zone.slack);
-    let rounding = 1e-14 * ((zone.centre.abs() + zone.extent()).element_sum() + value.abs()) + 1e-12 * rise;
+    let extent = zone.extent();
+    let rounding = 1e-14 * ((zone.centre.abs() + extent).element_sum() + value.abs()) + 1e-12 * rise;
     let hi = value + rise + rounding;
     if !hi.is_finite() {
         return known;
     }
-    let mut range = known.narrowed_by(Interval::new(f64::NEG_INFINITY, hi));
+    let mut range = known.narrowed_by(Interval::new(value - extent.length() - rounding, hi));
     if range.hi() < 0.0 || value <= 0.0 || range.lo() > 0.0 {
         return range;
     }
