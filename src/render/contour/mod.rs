@@ -69,8 +69,9 @@ impl Slice {
     /// Nothing that is wider than the tolerance is missed, and what is narrower is told
     /// ([`Contours::unresolved`]). Of lengths (offsets, shells, fillets) that is so as far as their
     /// [accuracy](Solid::accuracy) tells. Where ranges tell nothing (leaves at their pinched points,
-    /// some users' fields, lengths and fillets beside a face that lies along the plane) squares of a
-    /// 256th to a 4096th of the region are looked at by samples; each of them counts as unresolved.
+    /// some users' fields, fillets where they run out into a face that lies along the plane, jumps of
+    /// chamfers) squares of a 256th to a 4096th of the region are looked at by samples; each of them
+    /// counts as unresolved.
     /// Of a solid with measured lengths the plane is a 2⁻¹⁸th of the region's size aside of where it
     /// is asked for, else a 2⁻³⁷th.
     ///

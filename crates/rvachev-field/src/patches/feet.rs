@@ -43,8 +43,8 @@ pub(super) struct Feet<'a> {
 }
 
 impl SurfaceDistance {
-    /// Where the feet of a zone's points may be, given that of its centre, and on which patches; only of those that are no
-    /// farther from their feet than a level, if there is one.
+    /// Where the feet of a zone's points may be, given that of its centre, and on which patches;
+    /// only of those that are no farther from their feet than a level, if there is one.
     pub(super) fn feet<'a>(
         &self,
         zone: &Zone,
