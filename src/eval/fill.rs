@@ -27,11 +27,12 @@ use glam::{DAffine3, DVec3};
 use super::composite::unscaled;
 use super::even::{either, ends};
 use super::few::{Few, Lane};
+use super::room::{Room, meets};
 use super::signed::Signed;
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::VALUE_LIMIT;
 use rvachev_field::kernel::{distinct, repeat};
-use rvachev_field::{AnyField, Chunk, Layer, Way, Zone, bits, steep_slopes};
+use rvachev_field::{AnyField, Chunk, Layer, Way, Zone, steep_slopes};
 use rvachev_num::symbol::Symbol;
 
 /// D counts up to this part of the radius.
@@ -61,12 +62,7 @@ pub(super) struct Fill {
     /// How much is left out for the sake of flush faces.
     pub(super) margin: f64,
     /// Where there may be any.
-    boxes: Vec<Bounds>,
-    /// There is none beyond this box.
-    hull: Bounds,
-    /// The boxes that it is held to: those of joints, a little larger, for there is nothing about
-    /// their sides, and the hull as it is.
-    held: Vec<Bounds>,
+    room: Room,
 }
 
 /// The distances to the two nearest operands, held at the farthest, and which these are.
@@ -95,13 +91,12 @@ impl Two {
 impl Fill {
     /// All over space.
     pub(super) fn new(radius: f64, ball: Signed, sides: Vec<Side>, margin: f64) -> Fill {
-        Fill { radius, ball, sides, margin, boxes: Vec::new(), hull: Bounds::ALL, held: vec![Bounds::ALL] }
+        Fill { radius, ball, sides, margin, room: Room::all() }
     }
 
     /// In boxes alone, and not beyond the hull.
     pub(super) fn within(mut self, boxes: Vec<Bounds>, hull: Bounds) -> Fill {
-        self.held = boxes.iter().map(|own| own.inflate(MOST * self.radius).intersection(&hull)).collect();
-        (self.boxes, self.hull) = (boxes, hull);
+        self.room = Room::within(boxes, hull, MOST * self.radius);
         self
     }
 
@@ -138,60 +133,11 @@ impl Fill {
         fades.into_iter().flat_map(|two| two.sides).filter(move |number| *number < count)
     }
 
-    /// How deep inside of the boxes a point is, and along which axis that grows.
-    fn depth(&self, p: DVec3) -> (f64, DVec3) {
-        let mut most = (f64::NEG_INFINITY, DVec3::ZERO);
-        for bounds in &self.held {
-            let mut least = (f64::INFINITY, DVec3::ZERO);
-            for axis in 0..3 {
-                let (low, high) = (p[axis] - bounds.min[axis], bounds.max[axis] - p[axis]);
-                for (depth, way) in [(low, 1.0), (high, -1.0)] {
-                    if depth < least.0 {
-                        least = (depth, way * DVec3::AXES[axis]);
-                    }
-                }
-            }
-            if least.0 > most.0 {
-                most = least;
-            }
-        }
-        most
-    }
-
-    /// How deep inside of the boxes points of a zone are.
-    fn box_depth(&self, zone: &Zone) -> Interval {
-        let point = Interval::point;
-        let of_box = |bounds: &Bounds| {
-            let sides = zone.hull().into_iter().enumerate();
-            sides.fold(point(f64::INFINITY), |own, (axis, side)| {
-                own.min(side - point(bounds.min[axis])).min(point(bounds.max[axis]) - side)
-            })
-        };
-        self.held.iter().map(of_box).fold(point(f64::NEG_INFINITY), Interval::max)
-    }
-
-    /// The directions that lead away from the sides of the hull, as far as these are near: nearer
-    /// than this.
-    fn off_hull(&self, zone: &Zone, height: f64, ways: &[Way]) -> u8 {
-        let mut all = u8::MAX;
-        for (axis, side) in zone.hull().into_iter().enumerate() {
-            let is_near = [side.lo() - self.hull.min[axis], self.hull.max[axis] - side.hi()];
-            for (room, way) in is_near.into_iter().zip([1.0, -1.0]) {
-                if room < height {
-                    let mut slopes = [Interval::point(0.0); 3];
-                    slopes[axis] = Interval::point(way);
-                    all &= bits(ways, |way| way.is_rise(slopes));
-                }
-            }
-        }
-        all
-    }
-
     /// The value of the ball's field where this is at a level, where it does not fade away from
     /// operands: the ball is as far as its radius there.
     fn level_of_ball(&self, zone: &Zone, level: f64) -> Option<f64> {
         let height = self.margin + level;
-        let is_ball = self.sides.is_empty() && height < MOST * self.radius && self.box_depth(zone).lo() > level;
+        let is_ball = self.sides.is_empty() && height < MOST * self.radius && self.room.depths(zone).lo() > level;
         is_ball.then_some(self.ball.sign * (self.radius + height))
     }
 
@@ -201,19 +147,13 @@ impl Fill {
     }
 }
 
-/// Whether a zone meets a box.
-fn meets(zone: &Zone, bounds: &Bounds) -> bool {
-    let hull = zone.hull();
-    (0..3).all(|axis| hull[axis].hi() >= bounds.min[axis] && hull[axis].lo() <= bounds.max[axis])
-}
-
 impl AnyField for Fill {
     fn name(&self) -> &'static str {
         "fillet"
     }
 
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
-        self.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own)).transformed(map)
+        self.room.bounds().transformed(map)
     }
 
     fn check(&self) -> Result<(), ParamError> {
@@ -227,13 +167,13 @@ impl AnyField for Fill {
 
     fn value(&self, p: [f64; 3]) -> f64 {
         let p = DVec3::from_array(p);
-        let (depth, _) = self.depth(p);
+        let (depth, _) = self.room.depth(p);
         if depth < self.lowest() { depth } else { self.height(self.ball.value(p), self.two(p)).min(depth) }
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
         let at = DVec3::from_array(p.map(Dual::value));
-        let (depth, way) = self.depth(at);
+        let (depth, way) = self.room.depth(at);
         let looked = || {
             let (ball, two) = (self.ball.value(at), self.two(at));
             let height = self.height(ball, two);
@@ -263,7 +203,7 @@ impl AnyField for Fill {
     }
 
     fn axes(&self) -> [bool; 3] {
-        let of_boxes = self.held.iter().map(ends);
+        let of_boxes = self.room.held().map(ends);
         let of_sides = self.sides.iter().map(|side| side.distance.field.axes());
         of_boxes.chain(of_sides).fold(self.ball.field.axes(), either)
     }
@@ -274,7 +214,7 @@ impl AnyField for Fill {
 
     fn range(&self, zone: &Zone) -> Interval {
         let point = Interval::point;
-        let depth = self.box_depth(zone);
+        let depth = self.room.depths(zone);
         let lowest = point(self.lowest());
         if depth.hi() < 0.0 {
             return Interval::new(lowest.min(depth).lo(), depth.hi());
@@ -299,9 +239,7 @@ impl AnyField for Fill {
     /// Towards the joint the ball is farther off and the operands are nearer. Outside of the boxes
     /// nothing is told.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
-        let [low, high] = [Interval::lo, Interval::hi].map(|end| DVec3::from_array(zone.hull().map(end)));
-        let hull = Bounds::new(low, high);
-        if !self.boxes.iter().any(|bounds| bounds.inflate(MOST * self.radius).contains_bounds(&hull)) {
+        if !self.room.holds(zone) {
             return 0;
         }
         let turned = |sign: f64, fade: f64| -> Vec<Way> {
@@ -322,7 +260,7 @@ impl AnyField for Fill {
         if highest < MOST * self.radius {
             found |= but_one & ball(FADE) | ball(2.0 * FADE);
         }
-        found & self.off_hull(zone, highest.min(MOST * self.radius), ways)
+        found & self.room.off_hull(zone, highest.min(MOST * self.radius), ways)
     }
 
     fn enters(&self, zone: &Zone, ways: &[Way], level: f64) -> u8 {
@@ -346,11 +284,9 @@ impl AnyField for Fill {
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
         let mut simpler = self.clone();
-        let near: Vec<Bounds> =
-            self.boxes.iter().filter(|own| meets(zone, &own.inflate(MOST * self.radius))).copied().collect();
-        let mut is_simpler = near.len() < self.boxes.len() && !near.is_empty();
-        if is_simpler {
-            simpler = simpler.within(near, self.hull);
+        let mut is_simpler = false;
+        if let Some(room) = self.room.narrowed(zone) {
+            (simpler.room, is_simpler) = (room, true);
         }
         if let Some(field) = self.ball.field.narrowed(zone) {
             (simpler.ball.field, is_simpler) = (field, true);
@@ -420,7 +356,7 @@ impl AnyField for Fill {
         // The slopes of parts are those of the frame that the points are in.
         let mut all: Vec<(f64, DVec3)> = (0..count)
             .map(|i| {
-                let (depth, way) = self.depth(local(i));
+                let (depth, way) = self.room.depth(local(i));
                 (depth, DVec3::from_array(placement.pull(way.to_array())))
             })
             .collect();
@@ -480,7 +416,7 @@ impl Fill {
         let band = band.min(self.farthest());
         let local = |i: usize| DVec3::from_array(placement.apply([0, 1, 2].map(|axis| points[axis][i].to_f64())));
         let count = distinct(points);
-        let depths: Vec<f64> = (0..count).map(|i| self.depth(local(i)).0).collect();
+        let depths: Vec<f64> = (0..count).map(|i| self.room.depth(local(i)).0).collect();
         let mut all = depths.clone();
         let mut open = Few::of((0..count).filter(|i| depths[*i] > -band), points);
         let own = unscaled(placement);

@@ -50,6 +50,7 @@ mod ray;
 mod register;
 mod repeat;
 mod rise;
+mod room;
 mod runs;
 mod sampled;
 mod scene;
