@@ -194,6 +194,7 @@ pub(super) fn distance(
     let surface = surface(solid, &programs, wanted, source, run)?;
     let Surface { patches, accuracy, flat, .. } = &*surface;
     let field = SurfaceDistance::new(patches.clone(), sign(&programs), accuracy.error, *flat, programs.bounds());
+    let field = field.within(wanted.near());
     Ok((Arc::new(field), accuracy.plus(programs.accuracy)))
 }
 

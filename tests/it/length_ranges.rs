@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Solid,
-    program::{Program, Tape},
+    Blend, Bounds, Solid,
+    program::{Program, Region, Tape},
     rad,
 };
 
@@ -93,6 +93,50 @@ fn ranges_of_lengths_hold_every_value() {
 fn ranges_of_lengths_hold_every_value_at_length() {
     for seed in 0..20 {
         check(500 + seed, 400, 30);
+    }
+}
+
+/// The ball of a blend is measured about the joint: beyond that the sign of its distance changes
+/// where no patch is.
+#[test]
+fn ranges_of_blends_hold_every_value_beyond_the_joint() {
+    let (fillet, chamfer) = (|radius: f64| Blend::Fillet { radius }, |leg: f64| Blend::Chamfer { leg });
+    let (plate, post) = (Solid::cuboid([2.0, 1.0, 1.0]), Solid::cylinder(0.35, 2.2).translate([0.3, 0.2, 0.1]));
+    let body = Solid::cuboid([1.4, 1.0, 1.2]).taper(0.3, -0.2, 1.2);
+    let bore = Solid::cylinder(0.35, 1.0).translate([0.1, -0.1, 0.4]);
+    let solids = [
+        plate.union_with(&post, fillet(0.2)),
+        plate.union_with(&post, chamfer(0.1)),
+        body.difference_with(&bore, fillet(0.03)),
+        body.difference_with(&bore, chamfer(0.05)),
+        body.intersection_with(&post, fillet(0.05)),
+        body.twist(rad(0.4)).union_with(&post, fillet(0.1)).rounded(0.05),
+    ];
+    let mut random = Random::new(43);
+    for (number, solid) in solids.iter().enumerate() {
+        let (program, frame) = (solid.surface_program().unwrap(), frame_of(solid));
+        let held = Bounds::new(
+            DVec3::new(-0.08250662525433894, 0.2029470499435011, 0.8473327481136552),
+            DVec3::new(1.142446666235323, 0.2029470499435011, 1.574899418459152),
+        );
+        let places = (0..600).map(|_| place(&mut random, &frame)).collect::<Vec<_>>();
+        for place in places.into_iter().chain([held]) {
+            let range = program.range(&place).inflate(1e-9 + 1e-12 * place.max.abs().max_element());
+            let narrowed = program.narrow(&place);
+            for _ in 0..12 {
+                let p = random.point_in(&place);
+                let value = program.value(p);
+                assert!(range.contains(value), "{number}: {value} at {p} not in {range:?} over {place:?}");
+                let sign = match &narrowed {
+                    Region::Surface(narrowed) => narrowed.value(p),
+                    Region::Inside => 1.0,
+                    Region::Outside => -1.0,
+                };
+                assert!((sign > 0.0) == (value > 0.0) || value.abs() < 1e-3, "{number}: {value}, {sign} at {p}");
+            }
+            let p = place.max;
+            assert!(range.contains(program.value(p)), "{number}: {} at {p} not in {range:?}", program.value(p));
+        }
     }
 }
 

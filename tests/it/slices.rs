@@ -358,6 +358,21 @@ fn planes_in_and_beside_measured_faces_are_told() {
     assert!(unresolved < 1500, "{unresolved}");
 }
 
+/// Patches of a fillet's ball are of the region about the joint alone: beyond it the ball's sign changes
+/// where none is near, and that is seen.
+#[test]
+fn beyond_the_region_of_a_fillet_its_sign_is_seen() {
+    let body = Solid::cuboid([1.4, 1.0, 1.2]).taper(0.3, -0.2, 1.2);
+    let bore = Solid::cylinder(0.35, 1.0).translate([0.1, -0.1, 0.4]);
+    let part = body.difference_with(bore, Blend::Fillet { radius: 0.03 });
+    let normal = DVec3::new(-0.04016461081796307, 0.53483160548194, 0.8440035295041434);
+    let plane = Plane::new(DVec3::new(0.1, 0.05, 0.11512422438297754), normal);
+    for tolerance in [1e-2, 1e-3] {
+        let contours = part.slice(&plane).unwrap().contours(tolerance).unwrap();
+        assert_eq!((contours.len(), contours.unresolved()), (1, 0));
+    }
+}
+
 /// The face of a chamfer jumps where an operand's normal does: the contour goes along the jump.
 #[test]
 fn contours_follow_the_jumps_of_chamfers() {

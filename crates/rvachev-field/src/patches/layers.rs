@@ -31,7 +31,7 @@ impl SurfaceDistance {
     /// A layer that holds all points of a zone at this distance from the surface, negative outside;
     /// nothing so near to it that the sign may turn before the distance is 0.
     pub(super) fn level_layers(&self, zone: &Zone, level: f64) -> Option<Vec<Layer>> {
-        if !zone.is_finite() || level.abs() <= self.slack(zone, 0.0) {
+        if !zone.is_finite() || !self.is_whole(zone) || level.abs() <= self.slack(zone, 0.0) {
             return None;
         }
         let (mut axes, flat) = (DVec3::ONE, self.across(zone));

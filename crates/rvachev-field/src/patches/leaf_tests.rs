@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use super::SurfaceDistance;
 use super::tests::{Random, built, cuboid, sphere};
+use super::{Patch, SurfaceDistance};
 use crate::kernel::CHUNK;
-use crate::{AnyField, Bounds, Chunk, Cuboid, Dual, Placement, Sphere, VALUE_LIMIT, Way, Zone};
+use crate::{AnyField, Bounds, Chunk, Cuboid, Dual, Layer, Placement, Sphere, VALUE_LIMIT, Way, Zone};
 
 /// A unit sphere of patches as a leaf.
 fn ball(n: usize) -> SurfaceDistance {
@@ -246,6 +246,51 @@ fn along_ways_that_are_told_values_rise() {
         }
     }
     assert!(told.iter().all(|told| *told > 1000), "{told:?}");
+}
+
+/// Beyond the region of its patches a sign may change where none is near.
+#[test]
+fn beyond_their_region_patches_do_not_tell_the_sign() {
+    // The upper half of a ball's surface.
+    let whole = ball(16);
+    let (upper, size) = (Bounds::new(DVec3::new(-2.0, -2.0, 0.0), DVec3::splat(2.0)), DVec3::splat(1.8));
+    let half: Vec<Patch> = sphere(16, true).into_iter().filter(|patch| patch.bounds().max.z > 0.0).collect();
+    let field = SurfaceDistance::new(
+        built(&half),
+        whole.whole_sign.clone(),
+        2e-4,
+        None,
+        Bounds::from_center(DVec3::ZERO, DVec3::splat(2.0)),
+    );
+    let field = field.within(upper);
+    let mut random = Random(41);
+    let mut certain = 0;
+    for number in 0..4000 {
+        let (centre, half) = (random.point(1.0) * size, random.point(f64::powi(0.5, 1 + number % 4)).abs());
+        let zone = Zone::of_bounds(&Bounds::from_center(centre, 2.0 * half));
+        let (range, narrowed) = (field.range(&zone), field.narrowed(&zone));
+        certain += usize::from(range.lo() > 0.0 || range.hi() < 0.0);
+        let slope = DVec3::from_array(field.dual(Dual::point(centre.to_array())).d);
+        let is_told = field.rises(&zone, &[Way { middle: slope, sway: 0.0 }]) == 1;
+        let own = centre + half * random.point(1.0);
+        let layers = field.layers(&zone, field.value(own.to_array()));
+        let is_in = |layer: &Layer| (layer.low - 1e-6..layer.high + 1e-6).contains(&layer.normal.dot(own));
+        assert!(layers.is_none_or(|layers| layers.iter().any(is_in)), "{own} in no layer of {zone:?}");
+        for _ in 0..20 {
+            let p = (centre + half * random.point(1.0)).to_array();
+            let value = field.value(p);
+            // On one line along the way, as far as it is in the zone.
+            let q = DVec3::from_array(p) + 0.3 * half.min_element() * random.next().abs() * slope;
+            if is_told && ((q - centre).abs() - half).max_element() < 0.0 {
+                assert!(field.value(q.to_array()) >= value - 1e-3, "{value} at {p:?} falls along {slope}");
+            }
+            assert!(range.inflate(1e-9).contains(value), "{value} at {p:?} not in {range:?}");
+            if let Some(narrowed) = &narrowed {
+                assert!((narrowed.value(p) - value).abs() < 1e-9, "{value} at {p:?}, narrowed {}", narrowed.value(p));
+            }
+        }
+    }
+    assert!(certain > 1000, "{certain}");
 }
 
 /// What is above a level is not left along ways that are told, whatever the value is elsewhere.

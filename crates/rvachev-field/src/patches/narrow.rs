@@ -1,7 +1,7 @@
 //! The leaf over a zone.
 //!
-//! Where the surface is out of reach, so is a change of the sign: the sign field need not be asked
-//! at all. The search is left as it is: started at the lowest boxes that hold what can be nearest
+//! Where the surface is out of reach, so is a change of the sign, if the patches are all of it
+//! there: the sign field need not be asked at all. The search is left as it is: started at the lowest boxes that hold what can be nearest
 //! it takes some hundredths less, which is what finding these boxes takes.
 
 use super::SurfaceDistance;
@@ -16,7 +16,11 @@ impl SurfaceDistance {
         // Lanes round their points.
         let [near, _] = self.distances(zone, 4.0 * self.roundoff(zone.reach()))?;
         let mut narrowed = self.clone();
-        if near > 0.0 {
+        let is_certain = || {
+            let side = self.side(zone);
+            side.lo() >= 0.0 || side.hi() <= 0.0
+        };
+        if near > 0.0 && (self.is_whole(zone) || is_certain()) {
             let sign = self.sign.value(zone.centre.to_array());
             narrowed.side = Some(sign.signum());
             return (sign != 0.0).then_some(narrowed);

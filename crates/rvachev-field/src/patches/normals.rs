@@ -27,6 +27,9 @@ const BETWEEN: f64 = 0.25;
 impl SurfaceDistance {
     /// The directions along which the value rises all over a zone, or where it is a level at least.
     pub(super) fn rising(&self, zone: &Zone, ways: &[Way], level: Option<f64>) -> u8 {
+        if !self.is_whole(zone) {
+            return 0;
+        }
         let foot = self.patches.nearest(self.flattened(zone.centre));
         let feet = foot.and_then(|foot| self.feet(zone, foot, ways, level));
         feet.map_or(0, |(feet, patches)| self.patches.rising_from(&feet, &patches))

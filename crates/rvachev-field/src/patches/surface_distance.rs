@@ -34,6 +34,8 @@ pub struct SurfaceDistance {
     pub(super) error: f64,
     pub(super) flat: Option<usize>,
     bounds: Bounds,
+    /// Where the patches are all of the surface.
+    region: Bounds,
     /// The sign, where it is the same all over a zone.
     pub(super) side: Option<f64>,
 }
@@ -52,7 +54,18 @@ impl SurfaceDistance {
         bounds: Bounds,
     ) -> SurfaceDistance {
         let (whole_sign, flat) = (sign.clone(), flat.filter(|axis| *axis < 3));
-        SurfaceDistance { patches, sign, whole_sign, error, flat, bounds, side: None }
+        SurfaceDistance { patches, sign, whole_sign, error, flat, bounds, region: Bounds::ALL, side: None }
+    }
+
+    /// With patches that are all of the surface in a region, and may lack some beyond it: there the
+    /// sign may change where no patch is near.
+    #[must_use]
+    pub fn within(mut self, region: Bounds) -> SurfaceDistance {
+        self.region = region;
+        if let Some(axis) = self.flat {
+            (self.region.min[axis], self.region.max[axis]) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
+        self
     }
 
     /// The surface.
@@ -204,8 +217,14 @@ impl SurfaceDistance {
         DVec3::new(way(0), way(1), way(2)).length()
     }
 
+    /// Whether the sign of a zone's points changes at patches only.
+    pub(super) fn is_whole(&self, zone: &Zone) -> bool {
+        let [low, high] = [Interval::lo, Interval::hi].map(|end| DVec3::from_array(zone.hull().map(end)));
+        self.side.is_some() || self.region.contains_bounds(&Bounds::new(low, high).intersection(&self.bounds))
+    }
+
     /// What is certain of the sign over a zone.
-    fn side(&self, zone: &Zone) -> Interval {
+    pub(super) fn side(&self, zone: &Zone) -> Interval {
         if let Some(side) = self.side {
             return with_side(side);
         }
@@ -264,7 +283,10 @@ impl AnyField for SurfaceDistance {
     fn signature(&self) -> String {
         let (count, hash) = (self.patches.len(), self.patches.hash);
         let (sign, side) = (self.sign.signature(), self.side);
-        format!("SurfaceDistance({count}, {hash:016x}, {:?}, {:?}, {sign}, {side:?})", self.error, self.flat)
+        format!(
+            "SurfaceDistance({count}, {hash:016x}, {:?}, {:?}, {:?}, {sign}, {side:?})",
+            self.error, self.flat, self.region
+        )
     }
 
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
@@ -334,6 +356,14 @@ impl AnyField for SurfaceDistance {
         let at = zone.centre.to_array();
         let Some([near, far]) = self.distances(zone, 0.0) else { return Interval::point(self.value(at)) };
         let (range, sign) = (Interval::new(near, far.max(near)), self.sign(at));
+        if !self.is_whole(zone) {
+            let side = self.side(zone);
+            return match [side.lo() >= 0.0, side.hi() <= 0.0] {
+                [true, _] if near > 0.0 => range,
+                [_, true] if near > 0.0 => -range,
+                _ => range.hull(-range).narrowed_by(side),
+            };
+        }
         let range = if sign < 0.0 { -range } else { range };
         // Where the surface is out of reach, so is a change of the sign.
         if range.lo() > 0.0 || range.hi() < 0.0 { range } else { range.narrowed_by(self.side(zone)) }
