@@ -106,8 +106,9 @@
 //! How far two solids are apart, with the two nearest points; or how deep they go into each other,
 //! and what volume they have in common. What only touches does not overlap. Of meshes that were
 //! read, and of extruded polygons such as gears, it is told from their triangles, those of flat
-//! faces taken together: in milliseconds if they are apart or flat, and in some tenths of a second
-//! where round ones touch over thousands of triangles, or overlap.
+//! faces taken together: in milliseconds if they are flat or apart at most places, and in some
+//! hundredths or tenths of a second where a gap is even all over, as between a bolt and its nut, where
+//! round ones touch over thousands of triangles, or where they overlap.
 //!
 //! ```
 //! use rvachev::{Run, Solid};

@@ -15,7 +15,6 @@ mod bracket;
 mod bytes;
 mod chain;
 mod chamfer;
-mod close;
 mod coat;
 mod code;
 mod compile;

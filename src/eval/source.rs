@@ -100,11 +100,6 @@ impl Surface {
         Surface { tolerance, doubts, ..self }
     }
 
-    /// The boxes in which it may be off by more than its accuracy tells.
-    pub(crate) fn astray(&self) -> impl Iterator<Item = &Bounds> {
-        self.doubts.iter().filter(|(_, off)| *off > self.accuracy.tolerance).map(|(bounds, _)| bounds)
-    }
-
     /// The boxes of its patches, found on first use.
     pub(crate) fn runs(&self) -> &Runs {
         self.runs.get_or_init(|| Runs::new(&self.patches))

@@ -218,9 +218,10 @@ fn a_bolt_in_its_nut_runs_free_touches_or_is_too_thick() {
     let nut = |gap: f64| Solid::from(Prism::across_flats(6, 13.0, 2.0)) - screw(gap);
     let found = bolt.clearance(&nut(0.1), &Run::default()).unwrap().unwrap();
     assert!(!found.overlaps && (found.distance - 0.1).abs() < 0.001, "{found:?}");
-    assert!(found.tolerance < 0.1, "{found:?}");
+    assert!(found.tolerance < 0.015, "{found:?}");
+    // Along the edges of the thread patches are folded, and the nut ends in knife edges.
     let found = bolt.clearance(&nut(0.0), &Run::default()).unwrap().unwrap();
-    assert!(!found.overlaps && found.distance < 0.001, "{found:?}");
+    assert!(!found.overlaps && found.distance < 0.001 && found.tolerance < 0.02, "{found:?}");
     let found = bolt.clearance(&nut(-0.1), &Run::default()).unwrap().unwrap();
     // The thread is larger by as much along its axis and across it: its corners are the deepest.
     let deepest = 0.1 * f64::sqrt(2.0);

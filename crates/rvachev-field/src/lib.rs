@@ -95,7 +95,9 @@ pub use level::level_layers;
 pub use minimal_surface::{Grading, MinimalSurface};
 pub use network_lattice::NetworkLattice;
 pub use number::{Joined, Number};
-pub use patches::{Approach, Foot, MeshLeaf, OpenEdges, Patch, Patches, SurfaceDistance, Walls};
+pub use patches::{
+    Between, Foot, Loss, MeshLeaf, MovedApart, Moves, OpenEdges, Patch, Patches, Place, SurfaceDistance, Walls,
+};
 pub use placement::{Placement, smallest_stretch};
 pub use points::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,

@@ -58,13 +58,25 @@ impl Shared {
     }
 }
 
-/// A point of both solids in the boxes of both surfaces, or how large what is left of these is.
-pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entry, Cancelled> {
+/// A point of both solids in the boxes of both surfaces, or how deep one may be, given how deep one
+/// may be as the patches are, and how far these may be off without being looked into.
+pub(super) fn entry(
+    sides: [&Side<'_>; 2],
+    slack: f64,
+    [deepest, spare]: [f64; 2],
+    run: &Run,
+) -> Result<Entry, Cancelled> {
     let programs = sides.map(|side| Some(side.program.clone()));
-    let all = sides.iter().flat_map(|side| side.surface.astray());
     let whole = Shared { bounds: Bounds::EMPTY, programs };
-    let mut open: Vec<Shared> = all.filter_map(|bounds| whole.part(*bounds)).collect();
-    let (mut left, mut asked) = (0.0, open.len());
+    let astray = |side: &Side<'_>| {
+        let all = side.surface.doubts.iter().filter(|(_, off)| *off > side.exactness());
+        let (near, far): (Vec<&(Bounds, f64)>, Vec<_>) = all.partition(|(_, off)| *off <= spare);
+        let far: Vec<Shared> = far.into_iter().filter_map(|(bounds, _)| whole.part(*bounds)).collect();
+        (near.into_iter().map(|(_, off)| *off).fold(0.0, f64::max), far)
+    };
+    let [(off, mut open), (off_other, others)] = sides.map(astray);
+    open.extend(others);
+    let (mut left, mut asked) = (deepest + off + off_other, open.len());
     let mut levels = Levels::new(run);
     while !open.is_empty() {
         run.check()?;
@@ -98,9 +110,6 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
 pub(super) struct Known {
     /// They are no nearer to each other.
     pub(super) least: f64,
-    /// Whether that is of both surfaces, or of the first one and the other solid, whose value is of
-    /// no patches.
-    pub(super) of_both: bool,
     /// What it may be less by without being looked into.
     pub(super) loss: f64,
 }
@@ -121,9 +130,9 @@ pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f
     // Where both surfaces are off, what they are nearer by adds up: what is not looked into may be
     // half of it of each.
     let more = |n: usize, off: f64| (off - sides[n].fineness()).max(0.0);
-    let most = if known.of_both { 0.5 * known.loss } else { known.loss };
+    let most = 0.5 * known.loss;
     let spare = [1, 0].map(|n: usize| {
-        let all = sides[n].surface.doubts.iter().filter(|_| known.of_both).map(|(_, off)| more(n, *off));
+        let all = sides[n].surface.doubts.iter().map(|(_, off)| more(n, *off));
         all.filter(|own| *own <= most).fold(0.0, f64::max)
     });
     let mut least = known.least;
@@ -139,16 +148,13 @@ pub(super) fn least(sides: [&Side<'_>; 2], known: &Known, run: &Run) -> Result<f
         }
         open
     };
-    let mut open = [boxes(0), if known.of_both { boxes(1) } else { Vec::new() }];
+    let mut open = [boxes(0), boxes(1)];
     let mut asked = open[0].len() + open[1].len();
     let mut levels = Levels::new(run);
     while open.iter().any(|boxes| !boxes.is_empty()) {
         run.check()?;
         let are_compared = open[0].len() * open[1].len() <= PAIRS;
         let near = |side: usize, bounds: &Bounds, own: f64| {
-            if !known.of_both {
-                return (-sides[1].program.range(bounds).hi()).max(own);
-            }
             let to_patches =
                 distance(&sides[1 - side].surface.patches, bounds.center()) - bounds.half_extents().length() - slack;
             let others = open[1 - side].iter().filter(|_| are_compared);
@@ -207,7 +213,7 @@ mod tests {
             Surface::new(small[n].patches.clone(), small[n].accuracy, None).in_doubt(small[n].tolerance, doubts)
         });
         let sides = [0, 1].map(|n| Side::new(&programs[n], &surfaces[n], false));
-        let known = Known { least: 1.0 + 2.0 * by - fine, of_both: true, loss };
+        let known = Known { least: 1.0 + 2.0 * by - fine, loss };
         least([&sides[0], &sides[1]], &known, &Run::default()).unwrap()
     }
 

@@ -20,13 +20,13 @@ use self::apart::{Found, search};
 use self::depth::depth;
 use self::doubts::Known;
 use self::missed::{Inside, inside};
-use self::overlap::{Entry, common, entry, within};
+use self::overlap::{Entry, common, entry, moved, within};
 use super::enclosed::Enclosed;
 use super::exact;
 use super::integral::{Effort, integral};
 use crate::distance::{compiled_with, surface_with};
 use crate::error::PrepareError;
-use crate::eval::{Accuracy, Compiled, Program, Surface};
+use crate::eval::{Compiled, Program, Surface};
 use crate::geom::figures::point;
 use crate::{Run, Solid, SolidError};
 use rvachev_num::figures;
@@ -102,26 +102,22 @@ impl Solid {
     /// of the sizes. Where they touch or overlap it is 2·10⁻⁴ of the sizes: what goes no deeper
     /// than half of that touches.
     ///
-    /// That no points are nearer is told of the surface of one of the solids, as it was measured,
-    /// and of the other solid itself if its value changes by no more than lengths do, as that of
-    /// distances and of convex leaves does, joined and not deformed; else, and where a length of
-    /// the other solid was measured itself, as [`accuracy`](Solid::accuracy) tells, of both
-    /// surfaces as they were measured. In places where a surface is in doubt the solids are looked
-    /// at themselves.
+    /// That no points are nearer is told of both surfaces as they were measured. In places where a
+    /// surface is in doubt the solids are looked at themselves.
     ///
     /// That solids do not overlap is shown to the tolerance: all of each surface as it was measured
-    /// is far from the other one and outside, or, moved inwards by how exact it is, outside by
-    /// ranges of the other's value. What [may be missed](crate::lengths#accuracy) where lengths
-    /// are measured may be missed here too.
+    /// is far from the other one and outside, or as near to it as does not count, or outside when it
+    /// is moved inwards by that. What [may be missed](crate::lengths#accuracy) where lengths are
+    /// measured may be missed here too.
     ///
     /// Each surface takes as long as a mesh, once: solids that are moved or turned have that of the
     /// solid at rest, so that parts of an assembly are not measured anew in each position. After
-    /// that a clearance takes milliseconds where one place is nearest and of meshes and extruded
-    /// polygons, some tenths of a second where a gap is even all over and where meshes touch over
-    /// thousands of triangles or overlap. It takes seconds between threads and the like, and where
-    /// fine round meshes have an even gap or all but fall together. Triangles of a mesh that lie in
-    /// one plane are taken together, if nearly all do. The volume of an overlap is
-    /// found as by [`measure`](Solid::measure).
+    /// that a clearance takes milliseconds where one place is nearest, and some hundredths of a
+    /// second where a gap is even all over: some tenths between threads, between fine round meshes,
+    /// where surfaces touch all over, and where solids overlap. It takes seconds where fine round
+    /// meshes all but fall together. Triangles of a mesh that lie in one plane are taken together,
+    /// if nearly all do. The volume of an overlap is found as by [`measure`](Solid::measure); of one
+    /// that is thin all over, as of threads that are too thick, it may hardly be known.
     ///
     /// # Errors
     /// What is wrong with a solid, that it has no finite box, that it is so thin that nothing of
@@ -162,22 +158,18 @@ impl Solid {
             return Err(SolidError::Surface { reason }.into());
         }
         let slack = sides.iter().map(Side::exactness).sum::<f64>();
-        // The one whose surface is less in doubt is divided, if the other's values tell distances.
-        let is_turned = sides[0].cost(&sides[1]) > sides[1].cost(&sides[0]);
-        let [from, to] = if is_turned { [&sides[1], &sides[0]] } else { [&sides[0], &sides[1]] };
+        let [from, to] = [&sides[0], &sides[1]];
         let [to_find, to_doubt, first, second, third, to_overlap] = to_search.stages([0.35, 0.1, 0.1, 0.1, 0.05, 0.3]);
-        let in_order = |points: [DVec3; 2]| if is_turned { [points[1], points[0]] } else { points };
         let apart = |points: [DVec3; 2], tolerance: f64| {
             let [depth, depth_error, volume, volume_error] = [0.0; 4];
             let (overlaps, distance) = (false, points[0].distance(points[1]));
-            let points = in_order(points);
             Clearance { distance, tolerance, points, overlaps, depth, depth_error, volume, volume_error }
         };
         let overlap = |point: DVec3| {
             let common = Clearance { overlaps: true, ..apart([point; 2], slack) };
             self.overlap(other, common, [from, to], &to_overlap)
         };
-        let Found { points, mut least, leans, loss, common } = search(from, to, &to_find)?;
+        let Found { points, mut least, loss, common } = search(from, to, &to_find)?;
         let distance = points[0].distance(points[1]);
         if let Some(point) = common {
             return Ok(Some(overlap(point)?));
@@ -185,25 +177,22 @@ impl Solid {
         let do_share = own_box.intersects(&other_box);
         let fine = 2.0 * (from.fineness() + to.fineness());
         if least > 0.0 {
-            let known = Known { least, of_both: leans, loss };
-            least = doubts::least([from, to], &known, &to_doubt)?;
+            least = doubts::least([from, to], &Known { least, loss }, &to_doubt)?;
         }
         if !do_share {
             return Ok(Some(apart(points, distance - least)));
         }
         // Surfaces that are apart do not cross, but one may be within the other solid. Others are
-        // moved by the slack, and as far off.
+        // moved.
         let is_apart = least > fine;
-        let mut deepest = if is_apart { 0.0 } else { 2.0 * slack };
+        let mut deepest = if is_apart { 0.0 } else { slack + moved(from, to, slack) };
         for part in 0..3 {
             let found = match part {
                 0 if is_apart => within(to, from, slack, &first)?,
-                // The other's value has told it of all patches.
-                1 if is_apart && !leans => continue,
                 1 if is_apart => within(from, to, slack, &second)?,
                 0 => entry(from, to, slack, &first)?,
                 1 => entry(to, from, slack, &second)?,
-                _ => doubts::entry([from, to], slack, &third)?,
+                _ => doubts::entry([from, to], slack, [deepest, moved(from, to, slack)], &third)?,
             };
             match found {
                 Entry::At(point) => return Ok(Some(overlap(point)?)),
@@ -246,8 +235,6 @@ impl Solid {
 struct Side<'a> {
     program: &'a Program,
     surface: &'a Surface,
-    /// Whether the value changes by 1 per length unit at most, and tells more than the patches do.
-    is_gentle: bool,
     /// Whether the patches are the surface itself.
     is_known: bool,
 }
@@ -255,9 +242,7 @@ struct Side<'a> {
 impl<'a> Side<'a> {
     fn new(compiled: &'a Compiled, surface: &'a Surface, is_known: bool) -> Side<'a> {
         let program = &compiled.surface;
-        // A distance that was measured jumps where its patches are off the surface.
-        let is_exact = compiled.accuracy == Accuracy::default();
-        Side { program, surface, is_gentle: !is_known && is_exact && program.is_gentle(), is_known }
+        Side { program, surface, is_known }
     }
 
     /// What is said of a surface of which nothing was found, though a point is inside.
@@ -292,11 +277,6 @@ impl<'a> Side<'a> {
     /// How far they may be off where they are in no doubt.
     fn fineness(&self) -> f64 {
         self.surface.tolerance
-    }
-
-    /// How much there is against dividing this surface.
-    fn cost(&self, other: &Side<'_>) -> (bool, f64, usize) {
-        (!other.is_gentle, self.fineness(), self.surface.patches.len())
     }
 }
 

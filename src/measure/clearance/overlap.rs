@@ -2,43 +2,33 @@
 //!
 //! ```text
 //!     -----.           .-----
-//!           \  piece  /         A piece of the surface, moved inwards by what does not count, is
-//!       -----\-------/------    outside of the other solid where a range of the other's value
-//!             '-----'  deep     over it says so. Pieces of which neither that is known, nor a
-//!        other                  point inside, are divided.
+//!           \  part   /         A part of the surface, moved inwards by what does not count, is on one
+//!       -----\-------/------    side of the other surface if it does not meet that: a point tells which.
+//!             '-----'  deep
+//!        other
 //! ```
 
-use std::iter;
-use std::ops::{ControlFlow, Range};
-
 use glam::DVec3;
-use rvachev_field::Zone;
+use rvachev_field::{MovedApart, Moves, Patch, Patches, Place};
 
-use super::apart::ball;
-use super::levels::Levels;
 use super::piece::Piece;
-use super::{AT_ONCE, Side, distance};
-use crate::eval::Block;
+use super::{Side, distance};
 use crate::{Bounds, Cancelled, Run};
-use rvachev_num::jobs;
 
 /// How far inside a solid points of it are looked for, in accuracies of the surfaces: of thin
 /// sheets only those that are close to the surface are inside, or on a sheet midway between the
 /// faces.
 const INSIDE: [f64; 5] = [4.0, 1.0, 0.25, 0.06, 0.0];
 
-/// Pieces of which it is not known whether they go into the other solid are not divided any further
+/// Parts of which it is not known whether they go into the other solid are not divided any further
 /// if they are no larger than so many accuracies.
 const SMALL: f64 = 4.0;
 
 /// A path from one piece to another is asked about if it is no longer than so many of their sides.
 const BESIDE: f64 = 4.0;
 
-/// After so many pieces the work ends, with what is known then.
-const MOST: usize = 1 << 17;
-
-/// More of them are not compared at once.
-const TOGETHER: usize = 512;
+/// So many points of a surface are asked for, before all of it, whether one is in the other solid.
+const SAMPLES: usize = 1 << 10;
 
 /// What is found of one surface and another solid.
 pub(super) enum Entry {
@@ -65,13 +55,8 @@ pub(super) fn common(from: &Side<'_>, to: &Side<'_>, slack: f64, p: DVec3) -> Op
 }
 
 /// Whether a piece of `from` that is moved along its normal by this is outside of the other solid:
-/// then no point of it is deeper in that.
-pub(super) fn is_outside(piece: &Piece, from: &Side<'_>, to: &Side<'_>, by: f64) -> bool {
-    is_outside_beside(piece, from, to, by, &mut None)
-}
-
-/// The same, given a point that is outside, if one is known. Takes the piece's middle where it was
-/// moved to in its place.
+/// then no point of it is deeper in that. Given a point that is outside, if one is known; takes the
+/// piece's middle where it was moved to in its place.
 pub(super) fn is_outside_beside(
     piece: &Piece,
     from: &Side<'_>,
@@ -83,10 +68,10 @@ pub(super) fn is_outside_beside(
     let moved = piece.moved(by);
     let rounding = piece.off(patches) + from.fineness() + to.fineness();
     // What meets no triangle is on one side of them, as is what a path leads to that meets none.
-    if to.is_known && others.is_beyond(moved, rounding) == Some(true) {
+    if others.is_beyond(moved, rounding) {
         let middle = moved.iter().sum::<DVec3>() / 3.0;
         let beside = outside.filter(|p| p.distance(middle) <= BESIDE * piece.longest_side());
-        let is_beside = beside.is_some_and(|p| others.is_beyond([p, middle, moved[0]], rounding) == Some(true));
+        let is_beside = beside.is_some_and(|p| others.is_beyond([p, middle, moved[0]], rounding));
         if !is_beside && to.program.value(middle) > 0.0 {
             return false;
         }
@@ -99,174 +84,101 @@ pub(super) fn is_outside_beside(
     !hull.intersects(&others.bounds().inflate(by.abs())) || to.program.range_zone(&zone).hi() <= 0.0
 }
 
-/// The same of patches that follow each other, of which there are not too many, or whether they are
-/// inside: where these are flat, one look tells of all. Nothing if it does not.
-fn span_outside(span: Range<usize>, from: &Side<'_>, to: &Side<'_>, by: f64) -> Option<bool> {
-    if span.len() > TOGETHER || !to.is_known {
-        return None;
+/// What points of a surface tell: one of both solids, if it is just below one that is in the other, or
+/// else those that are in the other.
+fn told(places: &[Place], from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Told, Cancelled> {
+    let values = to.program.sampled(places.len(), |n| places[n].moved, run)?;
+    let mut within = Vec::new();
+    for (place, _) in places.iter().zip(values).filter(|(_, value)| *value > 0.0) {
+        if let Some(found) = common(from, to, slack, place.point) {
+            return Ok(Err(found));
+        }
+        within.push(*place);
     }
-    if span.len() == 1 {
-        return is_outside(&Piece::whole(&from.surface.patches, span.start), from, to, by).then_some(true);
-    }
-    let zone = Piece::span_moved(&from.surface.patches, span, by);
-    to.surface.patches.apart(&zone, from.fineness() + to.fineness())?;
-    Some(to.program.value(zone.centre) <= 0.0)
+    Ok(Ok(within))
 }
 
-/// The patches of `from` that may be in the other solid or at its surface, or a point of both;
-/// without those that are outside when they are moved along their normals by this.
-fn near(
-    from: &Side<'_>,
-    to: &Side<'_>,
-    slack: f64,
-    by: Option<f64>,
-    run: &Run,
-) -> Result<Result<Vec<usize>, DVec3>, Cancelled> {
-    let (runs, patches, others) = (from.surface.runs(), &from.surface.patches, &to.surface.patches);
-    let bounds = others.bounds().inflate(slack);
-    let mut blocks: Vec<Block> = runs.all().into_iter().collect();
-    let mut near = Vec::new();
-    let mut levels = Levels::new(run);
-    while !blocks.is_empty() {
-        // All of it is on one side of the other's surface, or that is near.
-        let look = |block: &Block| {
-            let (centre, radius) = ball(runs.bounds(*block));
-            if !runs.bounds(*block).inflate(slack).intersects(&bounds) {
-                return ControlFlow::Continue(None);
-            }
-            let own = patches.point(runs.patches(*block).start, [0.0; 2]);
-            // Of large blocks a point may tell at once.
-            if runs.patches(*block).len() > TOGETHER
-                && let Some(found) = common(from, to, slack, own)
-            {
-                return ControlFlow::Break(found);
-            }
-            let is_far = || others.apart(&Zone::of_bounds(runs.bounds(*block)), 2.0 * slack).is_some();
-            if distance(others, centre) <= radius + 2.0 * slack && !is_far() {
-                match by.and_then(|by| span_outside(runs.patches(*block), from, to, by)) {
-                    Some(true) => return ControlFlow::Continue(None),
-                    Some(false) => {}
-                    None => return ControlFlow::Continue(Some(*block)),
-                }
-            } else if to.program.value(centre) <= 0.0 {
-                return ControlFlow::Continue(None);
-            }
-            // Of a sheet it may not be found here: then each patch is looked at.
-            common(from, to, slack, own).map_or(ControlFlow::Continue(Some(*block)), ControlFlow::Break)
-        };
-        let mut open = Vec::new();
-        for some in levels.chunks(&blocks, 16 * AT_ONCE) {
-            let some = some?;
-            for found in jobs::in_order(some.len(), |n| look(&some[n])) {
-                match found {
-                    ControlFlow::Break(point) => return Ok(Err(point)),
-                    ControlFlow::Continue(block) => open.extend(block),
-                }
-            }
-        }
-        let patches;
-        (blocks, patches) = runs.opened(&open);
-        near.extend(patches);
-        levels.down()?;
-    }
-    Ok(Ok(near))
+/// A point of both solids, or parts of a surface of which there may be one.
+type Told = Result<Vec<Place>, DVec3>;
+
+/// How deep a part may be of which no point was found below its surface: of a sheet, or of what is
+/// hardly within.
+fn deep(place: &Place, to: &Side<'_>, slack: f64) -> f64 {
+    let others = &to.surface.patches;
+    let Some(corners) = place.corners else { return distance(others, place.moved) + place.reach + slack };
+    let inside = to.program.value(place.point) > 0.0;
+    let foot = if inside { others.nearest_with(place.point, &corners) } else { None };
+    foot.map_or(place.reach, |(foot, far)| far.max(foot.distance) + place.sag) + slack
+}
+
+/// Points of patches of a surface, with how far all of a patch is from its own at most, if they may be in the other's
+/// box; of so many.
+fn samples(from: &Side<'_>, to: &Side<'_>, most: usize) -> Vec<Place> {
+    let (own, bounds) = (&from.surface.patches, to.surface.patches.bounds());
+    let step = own.len().div_ceil(most).max(1);
+    let place = |n: usize| {
+        let point = own.point(n, [1.0 / 3.0; 2]);
+        bounds.contains(point).then(|| Place {
+            point,
+            moved: point,
+            reach: Piece::whole(own, n).reach(own),
+            corners: None,
+            sag: 0.0,
+        })
+    };
+    (0..own.len()).step_by(step).filter_map(place).collect()
 }
 
 /// Whether a part of one surface is within the other solid, given that they do not cross each
 /// other: of each patch the middle tells.
 pub(super) fn within(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Entry, Cancelled> {
-    let [to_open, to_look] = run.stages([0.5, 0.5]);
-    let patches = match near(from, to, slack, None, &to_open)? {
-        Ok(near) => near,
+    Ok(match told(&samples(from, to, usize::MAX), from, to, slack, run)? {
+        Err(point) => Entry::At(point),
+        Ok(within) => Entry::AtMost(within.iter().map(|place| deep(place, to, slack)).fold(0.0, f64::max)),
+    })
+}
+
+/// Looks for a point of both solids just below the surface of `from`, deeper in the other than by
+/// what does not count.
+pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Entry, Cancelled> {
+    let [to_sample, to_divide, to_tell, to_turn] = run.stages([0.1, 0.6, 0.2, 0.1]);
+    if let Err(point) = told(&samples(from, to, SAMPLES), from, to, slack, &to_sample)? {
+        return Ok(Entry::At(point));
+    }
+    let moves = Moves { by: moved(from, to, slack), least: from.fineness() + to.fineness(), small: SMALL * slack };
+    let others = &to.surface.patches;
+    let MovedApart { apart, mut left } = from.surface.patches.moved_apart(others, moves, &to_divide)?;
+    let within = match told(&apart, from, to, slack, &to_tell)? {
         Err(point) => return Ok(Entry::At(point)),
+        Ok(within) => within,
     };
-    let (own, others) = (&from.surface.patches, &to.surface.patches);
-    // Of a sheet, or of what is hardly within, no point may be found below its surface.
-    let look = |n: &usize| {
-        let p = own.point(*n, [1.0 / 3.0; 2]);
-        if to.program.value(p) <= 0.0 {
-            return Entry::AtMost(0.0);
-        }
-        let piece = Piece::whole(own, *n);
-        let deep = || distance(others, piece.middle()) + piece.reach(own) + slack;
-        common(from, to, slack, p).map_or_else(|| Entry::AtMost(deep()), Entry::At)
-    };
+    // Along edges patches may be folded over: these were moved upwards.
+    let (folded, within): (Vec<Place>, Vec<Place>) = within.into_iter().partition(|place| place.corners.is_some());
+    let turned: Vec<Patch> =
+        folded.iter().filter_map(|place| place.corners).map(|[a, b, c]| Patch::flat([a, c, b])).collect();
+    let sag = folded.iter().map(|place| place.sag).fold(0.0, f64::max);
+    let moves = Moves { least: moves.least + sag, ..moves };
+    let turned = Patches::new(&turned, &to_turn)?.moved_apart(others, moves, &to_turn)?;
+    left.extend(within);
+    left.extend(turned.left);
+    match told(&turned.apart, from, to, slack, &to_turn)? {
+        Err(point) => return Ok(Entry::At(point)),
+        Ok(within) => left.extend(within),
+    }
     let mut deepest = 0.0;
-    for some in Levels::new(&to_look).chunks(&patches, 16 * AT_ONCE) {
-        let some = some?;
-        for found in jobs::in_order(some.len(), |n| look(&some[n])) {
-            match found {
-                Entry::At(_) => return Ok(found),
-                Entry::AtMost(at_most) => deepest = f64::max(deepest, at_most),
-            }
+    for place in left {
+        if let Some(found) = common(from, to, slack, place.point) {
+            return Ok(Entry::At(found));
         }
+        deepest = f64::max(deepest, deep(&place, to, slack));
     }
     Ok(Entry::AtMost(deepest))
 }
 
-/// Looks for a point of both solids just below the surface of `from`.
-pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Entry, Cancelled> {
-    let (patches, others) = (&from.surface.patches, &to.surface.patches);
-    let bounds = others.bounds().inflate(slack);
-    // Beyond the other's box, farther from its surface than it is large, below its surface,
-    // undecided.
-    let look = |piece: &Piece, is_whole: bool| {
-        let middle = piece.middle();
-        let most = piece.longest_side() + piece.off(patches) + 2.0 * slack;
-        if bounds.distance_squared(middle).sqrt() > most {
-            return ControlFlow::Continue(None);
-        }
-        if distance(others, middle) > most && to.program.value(middle) <= 0.0 {
-            return ControlFlow::Continue(None);
-        }
-        if is_outside(piece, from, to, -slack) {
-            return ControlFlow::Continue(None);
-        }
-        // Corners of parts are those of wholes, or close to the middles of smaller parts.
-        let corners = piece.points.into_iter().filter(|_| is_whole);
-        match iter::once(middle).chain(corners).find_map(|p| common(from, to, slack, p)) {
-            Some(found) => ControlFlow::Break(found),
-            None => ControlFlow::Continue(Some(*piece)),
-        }
-    };
-    let [to_open, to_divide] = run.stages([0.4, 0.6]);
-    let near = match near(from, to, slack, Some(-slack), &to_open)? {
-        Ok(near) => near,
-        Err(point) => return Ok(Entry::At(point)),
-    };
-    let mut left = 0.0;
-    let mut asked = near.len();
-    let mut pieces: Vec<Piece> = near.into_iter().map(|n| Piece::whole(patches, n)).collect();
-    let mut levels = Levels::new(&to_divide);
-    let mut are_whole = true;
-    while !pieces.is_empty() {
-        let mut open = Vec::new();
-        for chunk in levels.chunks(&pieces, AT_ONCE) {
-            let chunk = chunk?;
-            let found: Vec<ControlFlow<DVec3, Option<Piece>>> =
-                jobs::in_order(chunk.len(), |n| look(&chunk[n], are_whole));
-            for found in found {
-                match found {
-                    ControlFlow::Break(point) => return Ok(Entry::At(point)),
-                    ControlFlow::Continue(piece) => open.extend(piece),
-                }
-            }
-        }
-        asked += 4 * open.len();
-        let is_small = |piece: &Piece| piece.longest_side() <= SMALL * slack || asked > MOST;
-        // How deep the middle is, and how far anything is from there.
-        let reach = |piece: &Piece| {
-            let middle = piece.middle();
-            let deep = if to.program.value(middle) > 0.0 { distance(others, middle) } else { 0.0 };
-            deep + piece.reach(patches) + slack
-        };
-        left = open.iter().filter(|piece| is_small(piece)).map(reach).fold(left, f64::max);
-        open.retain(|piece| !is_small(piece));
-        levels.down()?;
-        pieces = open.iter().flat_map(|piece| piece.divided(patches, |_| f64::NAN)).collect();
-        are_whole = false;
-    }
-    Ok(Entry::AtMost(left))
+/// How far parts of surfaces that may touch are moved: by what does not count, and far enough to be
+/// seen apart.
+pub(super) fn moved(from: &Side<'_>, to: &Side<'_>, slack: f64) -> f64 {
+    slack + 2.0 * (from.fineness() + to.fineness())
 }
 
 #[cfg(test)]

@@ -1,11 +1,7 @@
 //! Parts of the patches of a surface, divided into four at a time.
 
-use std::ops::Range;
-
 use glam::{DMat3, DVec3};
 use rvachev_field::{Patches, Zone};
-
-use crate::Bounds;
 
 /// A part of a patch: its corners in the patch's coordinates, where they are, and a number of each,
 /// NaN where none is known.
@@ -106,54 +102,8 @@ impl Piece {
         self.points.map(|p| p.lerp(middle, part) + along)
     }
 
-    /// A zone that holds some patches, moved along their common normal and drawn in from its sides
-    /// as a triangle [is](Piece::moved): of each of their points it holds one that is no farther
-    /// away than this.
-    pub(super) fn span_moved(patches: &Patches, span: Range<usize>, by: f64) -> Zone {
-        let whole = || span.clone().map(|n| Piece::whole(patches, n));
-        let area = |piece: &Piece| {
-            let [a, b, c] = piece.points;
-            (b - a).cross(c - a)
-        };
-        let normal = whole().map(|piece| area(&piece)).sum::<DVec3>().try_normalize().unwrap_or(DVec3::Z);
-        let (u, v) = normal.any_orthonormal_pair();
-        let frame = DMat3::from_cols(u, v, normal);
-        let inwards = frame.transpose();
-        let mut bounds = Bounds::EMPTY;
-        for piece in whole() {
-            bounds = bounds.union(&Bounds::from_points(piece.points.map(|p| inwards * p)).inflate(piece.off(patches)));
-        }
-        let half = bounds.half_extents();
-        let aside = ASIDE * by.abs() / 2f64.sqrt();
-        let half = DVec3::new((half.x - aside).max(0.0), (half.y - aside).max(0.0), half.z);
-        let along = (1.0 - ASIDE * ASIDE).sqrt() * by * normal;
-        Zone::of_frame(frame * bounds.center() + along, frame * DMat3::from_diagonal(half))
-    }
-
     pub(super) fn middle(&self) -> DVec3 {
         self.points.iter().sum::<DVec3>() / 3.0
-    }
-
-    /// A zone that holds it, and all that is no farther from it than this.
-    ///
-    /// ```text
-    ///     ____.-'''-.____      A patch is off to one side of its triangle mostly: the zone is moved there
-    ///     ---/-------\---      by half of that, and is as thick.
-    ///     ''''       ''''
-    /// ```
-    pub(super) fn slab(&self, patches: &Patches, by: f64) -> Zone {
-        let middles = self.middles(patches);
-        let offs = [0, 1, 2].map(|k| middles[k].1 - 0.5 * (self.points[k] + self.points[(k + 1) % 3]));
-        // A quadratic patch is off by four times the sum of the products of two of its coordinates,
-        // at most 1/4 each and 1/3 together, and these vectors.
-        let normal = self.normal();
-        let heights = offs.map(|off| off.dot(normal));
-        let [low, high] = [f64::min, f64::max].map(|pick| heights.into_iter().fold(0.0, pick) * 4.0 / 3.0);
-        let aside = offs.iter().map(|off| (*off - off.dot(normal) * normal).length()).fold(0.0, f64::max) * 4.0 / 3.0;
-        let [a, b, c] = self.points;
-        let axes = DMat3::from_cols(0.5 * (b - a), 0.5 * (c - a), 0.5 * (high - low) * normal);
-        // Of a triangle without area there is no normal, and all of what is off is aside.
-        Zone::of_frame(0.5 * (b + c) + 0.5 * (high + low) * normal, axes).inflated(aside + by)
     }
 
     /// A zone that holds it, moved by a vector.

@@ -25,6 +25,14 @@ const SURE: f64 = 1.0 - 128.0 * f32::EPSILON as f64;
 /// How much discs are grown, as a part of their radius, for points that are nearer.
 const GROWTH: f64 = 256.0 * f32::EPSILON as f64;
 
+/// The numbers of a flat cylinder.
+pub(super) struct Cylinder {
+    pub(super) centre: DVec3,
+    pub(super) normal: DVec3,
+    pub(super) half: f64,
+    pub(super) radius: f64,
+}
+
 /// A flat cylinder.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
@@ -43,6 +51,12 @@ impl Disc {
     #[inline(always)]
     pub(super) fn is_none(&self) -> bool {
         self.square < 0.0
+    }
+
+    /// Its centre, its axis, and half its length along that with its radius; nothing if there is none.
+    pub(super) fn cylinder(&self) -> Option<Cylinder> {
+        let [half, radius] = [f64::from(self.half), f64::from(self.square.max(0.0)).sqrt()];
+        (!self.is_none()).then_some(Cylinder { centre: double(self.centre), normal: double(self.normal), half, radius })
     }
 
     /// The squares of how far points are from it, at least.

@@ -27,7 +27,7 @@
 //! triangle; I. Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies* (2007).
 
 mod apart;
-mod approach;
+mod between;
 mod block;
 mod chunks;
 mod closest;
@@ -38,10 +38,12 @@ mod double;
 mod face;
 mod feet;
 mod hierarchy;
+mod hull;
 mod inscribed;
 mod layers;
 #[cfg(test)]
 mod leaf_tests;
+mod moved_apart;
 mod narrow;
 mod normals;
 mod packet;
@@ -56,6 +58,7 @@ mod support;
 mod surface_distance;
 #[cfg(test)]
 mod tests;
+mod triangles;
 
 use std::fmt;
 
@@ -70,8 +73,9 @@ use self::hierarchy::{Node, Tree};
 use self::search::{Best, Entries, Keep, Nearest, Range, SURE, Stack};
 use crate::Bounds;
 
-pub use self::approach::Approach;
+pub use self::between::{Between, Loss};
 pub use self::inscribed::Walls;
+pub use self::moved_apart::{MovedApart, Moves, Place};
 pub use self::patch::Patch;
 pub use self::solid::{MeshLeaf, OpenEdges};
 pub use self::surface_distance::SurfaceDistance;

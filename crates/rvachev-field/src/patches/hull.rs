@@ -1,0 +1,233 @@
+//! Boxes of the hierarchy, and parts of patches, as they are compared with those of another surface.
+//!
+//! ```text
+//!      ____________        Along a surface a box is thick where that is oblique, and a disc is not: discs of
+//!     (____________) P     two surfaces are as far apart as these are to the second order of their size. So of
+//!       ____________       a gap that is even all over little is left when boxes are as small as patches.
+//!      (____________) Q
+//! ```
+//!
+//! Source: S. Gottschalk, M. C. Lin, D. Manocha, *OBBTree: A Hierarchical Structure for Rapid
+//! Interference Detection* (1996), for boxes along the surface.
+
+use glam::DVec3;
+
+use super::Patches;
+use super::disc::Cylinder;
+use super::face::double;
+use super::hierarchy::{Node, PARENT};
+use super::triangles;
+
+/// A box with its disc, or a ball where there is none, in length units.
+#[derive(Clone, Copy)]
+pub(super) struct Hull {
+    low: DVec3,
+    high: DVec3,
+    centre: DVec3,
+    /// A unit vector along the axis of the disc, or 0 of a ball.
+    pub(super) normal: DVec3,
+    half: f64,
+    pub(super) radius: f64,
+    /// The radius of a ball about it.
+    pub(super) size: f64,
+}
+
+impl Hull {
+    /// One that holds all that is no farther from it than this.
+    pub(super) fn inflated(&self, by: f64) -> Hull {
+        let (half, radius) = (self.half + by, self.radius + by);
+        Hull { low: self.low - by, high: self.high + by, half, radius, size: self.size + by, ..*self }
+    }
+
+    /// The square of how far another one is at least; what is more than is asked for may be told as
+    /// less.
+    pub(super) fn gap(&self, other: &Hull, enough: f64) -> f64 {
+        let by_box = (self.low - other.high).max(other.low - self.high).max(DVec3::ZERO).length_squared();
+        if by_box >= enough {
+            return by_box;
+        }
+        let away = self.centre - other.centre;
+        let (square, size) = (away.length_squared(), self.size + other.size);
+        let cosine = self.normal.dot(other.normal);
+        let (own, others) = (away.dot(self.normal), away.dot(other.normal));
+        // How far they are along a way and across it, given how far their centres are and both reach
+        // along it.
+        let along = |height: f64, reach: f64| {
+            let above = (height.abs() - reach).max(0.0);
+            let aside = square - height * height - size * size;
+            let aside = if aside > 0.0 { (square - height * height).sqrt() - size } else { 0.0 };
+            above * above + aside * aside
+        };
+        // Midway between both axes each is as far from it.
+        let both = (2.0 + 2.0 * cosine.abs()).sqrt();
+        let (near, far) = (0.5 * both, (0.5 - 0.5 * cosine.abs()).max(0.0).sqrt());
+        let reach = near * (self.half + other.half) + far * (self.radius + other.radius);
+        let mut gap = by_box.max(along((own + cosine.signum() * others) / both, reach));
+        if gap < enough {
+            let (along_other, across) = (cosine.abs(), (1.0 - cosine * cosine).max(0.0).sqrt());
+            gap = gap.max(along(own, self.half + along_other * other.half + across * other.radius));
+            gap = gap.max(along(others, other.half + along_other * self.half + across * self.radius));
+        }
+        gap
+    }
+}
+
+/// A box of the hierarchy, or a part of a patch.
+#[derive(Clone, Copy)]
+pub(super) struct Item {
+    pub(super) hull: Hull,
+    pub(super) what: What,
+}
+
+#[derive(Clone, Copy)]
+pub(super) enum What {
+    Node(u32),
+    Part(Part),
+}
+
+/// A part of a patch.
+#[derive(Clone, Copy)]
+pub(super) struct Part {
+    /// Its corners.
+    pub(super) points: [DVec3; 3],
+    /// How far the middles of its sides are off the straight lines.
+    bends: [DVec3; 3],
+    /// It is no farther off its triangle.
+    pub(super) sag: f64,
+}
+
+impl Part {
+    /// Its four parts: the sides of each are parallel to its own and half as long, so that they bend
+    /// by a quarter.
+    fn divided(&self) -> [Part; 4] {
+        let ends = self.points;
+        let middles = [0, 1, 2].map(|k| 0.5 * (ends[k] + ends[(k + 1) % 3]) + self.bends[k]);
+        // With the side that the first one is parallel to.
+        let of = |points: [DVec3; 3], side: usize| {
+            let bends = [0, 1, 2].map(|k| 0.25 * self.bends[(side + k) % 3]);
+            Part { points, bends, sag: 0.25 * self.sag }
+        };
+        let corner = |k: usize| of([ends[k], middles[k], middles[(k + 2) % 3]], k);
+        [corner(0), corner(1), corner(2), of(middles, 2)]
+    }
+
+    pub(super) fn longest_side(&self) -> f64 {
+        (0..3).map(|k| self.points[k].distance(self.points[(k + 1) % 3])).fold(0.0, f64::max)
+    }
+
+    pub(super) fn moved(&self, by: DVec3) -> Part {
+        Part { points: self.points.map(|p| p + by), ..*self }
+    }
+
+    pub(super) fn item(self) -> Item {
+        let [a, b, c] = self.points;
+        let centre = (a + b + c) / 3.0;
+        let reach = self.points.iter().fold(0.0, |most, p| centre.distance_squared(*p).max(most)).sqrt();
+        let (low, high) = (a.min(b).min(c) - self.sag, a.max(b).max(c) + self.sag);
+        let radius = reach + self.sag;
+        let hull = match (b - a).cross(c - a).try_normalize() {
+            Some(normal) => {
+                // A quadratic patch is off by four times the sum of the products of two of its
+                // coordinates, at most 1/3 together, and these vectors.
+                let heights = self.bends.map(|by| 4.0 / 3.0 * by.dot(normal));
+                let [from, to] =
+                    [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| heights.into_iter().fold(0.0, pick));
+                let (centre, half) = (centre + 0.5 * (from + to) * normal, 0.5 * (to - from));
+                Hull { low, high, centre, normal, half, radius, size: radius.hypot(half) }
+            }
+            None => Hull { low, high, centre, normal: DVec3::ZERO, half: 0.0, radius, size: radius },
+        };
+        Item { hull, what: What::Part(self) }
+    }
+}
+
+impl Patches {
+    /// Whether no point of a triangle is within a length of the patches.
+    pub fn is_beyond(&self, triangle: [DVec3; 3], length: f64) -> bool {
+        let own = Part { points: triangle, bends: [DVec3::ZERO; 3], sag: 0.0 };
+        let (hull, least) = (own.item().hull, length * length);
+        let mut open = Vec::with_capacity(64);
+        open.extend((!self.is_empty()).then(|| self.node(0)));
+        while let Some(item) = open.pop() {
+            if hull.gap(&item.hull, least) >= least {
+                continue;
+            }
+            match &item.what {
+                What::Node(_) => self.opened(&item, &mut open),
+                What::Part(other) if triangles::nearest(own.points, other.points).0.sqrt() - other.sag >= length => {}
+                What::Part(_) => return false,
+            }
+        }
+        true
+    }
+
+    /// A box.
+    pub(super) fn node(&self, at: u32) -> Item {
+        let (node, disc) = (&self.nodes[at as usize], &self.discs[at as usize]);
+        let unit = self.frame.unit;
+        let [low, high] = [node.low, node.high].map(|p| self.frame.outward(double(p)));
+        let hull = match disc.cylinder() {
+            Some(Cylinder { centre, normal, half, radius }) => {
+                let (centre, half, radius) = (self.frame.outward(centre), unit * half, unit * radius);
+                Hull { low, high, centre, normal, half, radius, size: radius.hypot(half) }
+            }
+            None => {
+                let radius = 0.5 * (high - low).length();
+                Hull { low, high, centre: 0.5 * (low + high), normal: DVec3::ZERO, half: 0.0, radius, size: radius }
+            }
+        };
+        Item { hull, what: What::Node(at) }
+    }
+
+    /// What an item is made of.
+    pub(super) fn opened(&self, item: &Item, into: &mut Vec<Item>) {
+        match &item.what {
+            What::Node(at) => {
+                let Node { first, count, .. } = self.nodes[*at as usize];
+                if count >= PARENT {
+                    into.extend([first, first + 1].map(|at| self.node(at)));
+                } else {
+                    into.extend((first..first + count).map(|at| self.whole(at).item()));
+                }
+            }
+            What::Part(part) => into.extend(part.divided().map(Part::item)),
+        }
+    }
+
+    /// A point of the patches of an item.
+    pub(super) fn corner(&self, item: &Item) -> DVec3 {
+        match &item.what {
+            What::Part(part) => part.points[0],
+            What::Node(at) => {
+                let mut node = &self.nodes[*at as usize];
+                while node.count >= PARENT {
+                    node = &self.nodes[node.first as usize];
+                }
+                self.frame.outward(double(self.faces[node.first as usize].a))
+            }
+        }
+    }
+
+    /// A whole patch.
+    fn whole(&self, at: u32) -> Part {
+        let (face, sides, unit) = (&self.faces[at as usize], &self.sides[at as usize], self.frame.unit);
+        let [a, e, f] = [face.a, sides.e, sides.f].map(double);
+        let points = [a, a + e, a + f].map(|p| self.frame.outward(p));
+        let bends = self.quadratics.get(at as usize).map_or([DVec3::ZERO; 3], |quadratic| {
+            let [c, d, e] = [quadratic.c, quadratic.d, quadratic.e].map(|by| 0.25 * unit * double(by));
+            [c, e + c + d, d]
+        });
+        Part { points, bends, sag: unit * f64::from(face.sag) }
+    }
+}
+
+/// Whether an item is opened before it is compared with parts of another: boxes if they are larger,
+/// or the other is none, and patches if they are off by more and by what counts.
+pub(super) fn is_opened(item: &Item, other: &Item, fine: f64) -> bool {
+    match (&item.what, &other.what) {
+        (What::Node(_), What::Part(_)) => true,
+        (What::Node(_), What::Node(_)) => item.hull.radius > other.hull.radius,
+        (What::Part(_), What::Node(_)) => false,
+        (What::Part(own), What::Part(other)) => own.sag > fine && own.sag > other.sag,
+    }
+}
