@@ -84,8 +84,8 @@ pub(super) fn is_outside_beside(
     !hull.intersects(&others.bounds().inflate(by.abs())) || to.program.range_zone(&zone).hi() <= 0.0
 }
 
-/// What points of a surface tell: one of both solids, if it is just below one that is in the other, or
-/// else those that are in the other.
+/// What points of a surface tell: one of both solids, just below one that is in the other, or else
+/// those that are in the other.
 fn told(places: &[Place], from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Told, Cancelled> {
     let values = to.program.sampled(places.len(), |n| places[n].moved, run)?;
     let mut within = Vec::new();
@@ -111,8 +111,7 @@ fn deep(place: &Place, to: &Side<'_>, slack: f64) -> f64 {
     foot.map_or(place.reach, |(foot, far)| far.max(foot.distance) + place.sag) + slack
 }
 
-/// Points of patches of a surface, with how far all of a patch is from its own at most, if they may be in the other's
-/// box; of so many.
+/// A point of each patch of a surface, of so many evenly chosen ones, if it is in the other's box.
 fn samples(from: &Side<'_>, to: &Side<'_>, most: usize) -> Vec<Place> {
     let (own, bounds) = (&from.surface.patches, to.surface.patches.bounds());
     let step = own.len().div_ceil(most).max(1);

@@ -200,9 +200,11 @@ impl Subject<'_> {
             let count = near.iter().filter(|q| self.inside(**q)).count();
             // At a rim that ends in a cusp none of them is inside, and values are steep.
             let (value, slope) = self.program.gradient(found);
-            fault("closest point", count % 200 != 0 || value.abs() < 1e-9 * self.size * slope.length().max(1.0), || {
-                format!("{found} of {p} is not on the surface, but {value:e}")
-            })?;
+            fault(
+                "closest point",
+                count % 200 != 0 || value.abs() < 1e-9 * self.size * slope.length().max(1.0),
+                || format!("{found} of {p} is not on the surface, but {value:e}"),
+            )?;
         }
         Ok(())
     }

@@ -35,8 +35,8 @@ pub struct Loss {
     pub fine: f64,
 }
 
-/// A part of the other surface that may be near, by its number, and the square of how near it is at
-/// most.
+/// A part of the other surface that may be near, by its number. The square of its distance is no
+/// less than what is known.
 #[derive(Clone, Copy)]
 struct Near {
     item: usize,
@@ -56,7 +56,6 @@ impl Patches {
         if !self.is_empty() && !other.is_empty() {
             search.visit(&self.node(0), vec![Near { item: 0, least: 0.0 }], [0.0, 1.0])?;
         }
-        eprintln!("DBG looked {} known {} least {}", search.looked, search.known, search.least);
         Ok(Between { least: search.least, nearest: search.nearest.map(|p| (search.known, p)) })
     }
 }

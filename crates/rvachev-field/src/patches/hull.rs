@@ -1,4 +1,4 @@
-//! Boxes of the hierarchy, and parts of patches, as they are compared with those of another surface.
+//! Boxes of the hierarchy, and parts of patches, as they are compared with those of others.
 //!
 //! ```text
 //!      ____________        Along a surface a box is thick where that is oblique, and a disc is not: discs of
@@ -50,8 +50,8 @@ impl Hull {
         let (square, size) = (away.length_squared(), self.size + other.size);
         let cosine = self.normal.dot(other.normal);
         let (own, others) = (away.dot(self.normal), away.dot(other.normal));
-        // How far they are along a way and across it, given how far their centres are and both reach
-        // along it.
+        // How far they are along a way and across it, given how far their centres are, and how far
+        // both reach, along it.
         let along = |height: f64, reach: f64| {
             let above = (height.abs() - reach).max(0.0);
             let aside = square - height * height - size * size;
@@ -97,8 +97,8 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Its four parts: the sides of each are parallel to its own and half as long, so that they bend
-    /// by a quarter.
+    /// Its four parts: the sides of each are parallel to its own and half as long, so that they
+    /// bend by a quarter.
     fn divided(&self) -> [Part; 4] {
         let ends = self.points;
         let middles = [0, 1, 2].map(|k| 0.5 * (ends[k] + ends[(k + 1) % 3]) + self.bends[k]);

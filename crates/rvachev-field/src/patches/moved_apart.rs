@@ -92,8 +92,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Looks at an item of the first surface, near which some of the other may be when its parts are
-    /// moved.
+    /// Looks at an item of the first surface, near which some of the other may be when its parts
+    /// are moved.
     fn visit(&mut self, own: &Item, mut near: Vec<usize>, [from, to]: [f64; 2]) -> Result<(), Cancelled> {
         let Moves { by, least, small } = self.moves;
         let in_use = self.items.len();
