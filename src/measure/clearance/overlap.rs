@@ -67,8 +67,9 @@ pub(super) fn is_outside_beside(
     let (patches, others) = (&from.surface.patches, &to.surface.patches);
     let moved = piece.moved(by);
     let rounding = piece.off(patches) + from.fineness() + to.fineness();
-    // What meets no triangle is on one side of them, as is what a path leads to that meets none.
-    if others.is_beyond(moved, rounding) {
+    // What meets no triangle is on one side of them, as is what a path leads to that meets none. From
+    // a surface beside its own a piece gets no farther than it is moved.
+    if rounding < by.abs() && others.is_beyond(moved, rounding) {
         let middle = moved.iter().sum::<DVec3>() / 3.0;
         let beside = outside.filter(|p| p.distance(middle) <= BESIDE * piece.longest_side());
         let is_beside = beside.is_some_and(|p| others.is_beyond([p, middle, moved[0]], rounding));

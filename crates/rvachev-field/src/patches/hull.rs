@@ -39,10 +39,15 @@ impl Hull {
         Hull { low: self.low - by, high: self.high + by, half, radius, size: self.size + by, ..*self }
     }
 
+    /// The square of how far a box is from its own.
+    fn box_gap(&self, [low, high]: [DVec3; 2]) -> f64 {
+        (self.low - high).max(low - self.high).max(DVec3::ZERO).length_squared()
+    }
+
     /// The square of how far another one is at least; what is more than is asked for may be told as
     /// less.
     pub(super) fn gap(&self, other: &Hull, enough: f64) -> f64 {
-        let by_box = (self.low - other.high).max(other.low - self.high).max(DVec3::ZERO).length_squared();
+        let by_box = self.box_gap([other.low, other.high]);
         if by_box >= enough {
             return by_box;
         }
@@ -133,7 +138,7 @@ impl Part {
                 let [from, to] =
                     [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| heights.into_iter().fold(0.0, pick));
                 let (centre, half) = (centre + 0.5 * (from + to) * normal, 0.5 * (to - from));
-                Hull { low, high, centre, normal, half, radius, size: radius.hypot(half) }
+                Hull { low, high, centre, normal, half, radius, size: (radius * radius + half * half).sqrt() }
             }
             None => Hull { low, high, centre, normal: DVec3::ZERO, half: 0.0, radius, size: radius },
         };
@@ -146,30 +151,41 @@ impl Patches {
     pub fn is_beyond(&self, triangle: [DVec3; 3], length: f64) -> bool {
         let own = Part { points: triangle, bends: [DVec3::ZERO; 3], sag: 0.0 };
         let (hull, least) = (own.item().hull, length * length);
+        let is_apart = |item: &Item| match &item.what {
+            _ if hull.gap(&item.hull, least) >= least => true,
+            What::Part(other) => triangles::nearest(own.points, other.points).0.sqrt() - other.sag >= length,
+            What::Node(_) => false,
+        };
         let mut open = Vec::with_capacity(64);
-        open.extend((!self.is_empty()).then(|| self.node(0)));
-        while let Some(item) = open.pop() {
-            if hull.gap(&item.hull, least) >= least {
+        open.extend((!self.is_empty()).then_some(0));
+        while let Some(at) = open.pop() {
+            let Node { first, count, .. } = self.nodes[at as usize];
+            // Most are told by their boxes.
+            if hull.box_gap(self.bounds_of(at)) >= least || is_apart(&self.node(at)) {
                 continue;
             }
-            match &item.what {
-                What::Node(_) => self.opened(&item, &mut open),
-                What::Part(other) if triangles::nearest(own.points, other.points).0.sqrt() - other.sag >= length => {}
-                What::Part(_) => return false,
+            if count >= PARENT {
+                open.extend([first, first + 1]);
+            } else if !(first..first + count).all(|at| is_apart(&self.whole(at).item())) {
+                return false;
             }
         }
         true
     }
 
+    fn bounds_of(&self, at: u32) -> [DVec3; 2] {
+        let node = &self.nodes[at as usize];
+        [node.low, node.high].map(|p| self.frame.outward(double(p)))
+    }
+
     /// A box.
     pub(super) fn node(&self, at: u32) -> Item {
-        let (node, disc) = (&self.nodes[at as usize], &self.discs[at as usize]);
-        let unit = self.frame.unit;
-        let [low, high] = [node.low, node.high].map(|p| self.frame.outward(double(p)));
+        let (disc, unit) = (&self.discs[at as usize], self.frame.unit);
+        let [low, high] = self.bounds_of(at);
         let hull = match disc.cylinder() {
             Some(Cylinder { centre, normal, half, radius }) => {
                 let (centre, half, radius) = (self.frame.outward(centre), unit * half, unit * radius);
-                Hull { low, high, centre, normal, half, radius, size: radius.hypot(half) }
+                Hull { low, high, centre, normal, half, radius, size: (radius * radius + half * half).sqrt() }
             }
             None => {
                 let radius = 0.5 * (high - low).length();
