@@ -199,39 +199,77 @@ mod tests {
     use super::super::Patch;
     use super::*;
 
-    /// A square of so many steps, of two triangles each, at a height; its normal is up, or down.
-    fn sheet(height: f64, steps: usize, is_up: bool) -> Patches {
+    /// A square of so many steps, of two triangles each, over two vectors.
+    fn square(from: DVec3, [u, v]: [DVec3; 2], steps: usize) -> Vec<Patch> {
         let at = |i: usize, j: usize| {
-            let [x, y] = [i, j].map(|k| k as f64 / steps as f64);
-            DVec3::new(x, y, height)
+            let [s, t] = [i, j].map(|k| k as f64 / steps as f64);
+            from + s * u + t * v
         };
         let two = |k: usize| {
             let (i, j) = (k % steps, k / steps);
             let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            if is_up { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] }
+            [[a, b, c], [a, c, d]]
         };
-        let all: Vec<Patch> = (0..steps * steps).flat_map(two).map(Patch::flat).collect();
-        Patches::new(&all, &Run::default()).unwrap()
+        (0..steps * steps).flat_map(two).map(Patch::flat).collect()
+    }
+
+    fn patches(all: &[Patch]) -> Patches {
+        Patches::new(all, &Run::default()).unwrap()
+    }
+
+    /// A square at a height, whose normal is up.
+    fn sheet(height: f64) -> Vec<Patch> {
+        square(height * DVec3::Z, [DVec3::X, DVec3::Y], 7)
+    }
+
+    /// What is found of a square that looks down.
+    fn found(others: &[Patch]) -> MovedApart {
+        let down = square(DVec3::ZERO, [DVec3::Y, DVec3::X], 5);
+        let moves = Moves { by: 0.02, least: 0.001, small: 0.05 };
+        patches(&down).moved_apart(&patches(others), moves, &Run::default()).unwrap()
     }
 
     #[test]
     fn what_is_no_deeper_than_it_is_moved_is_apart() {
-        let (down, up) = (sheet(0.0, 5, false), sheet(0.0, 7, true));
-        let found = |height: f64| {
-            let above = sheet(height, 7, true);
-            down.moved_apart(&above, Moves { by: 0.02, least: 0.001, small: 0.05 }, &Run::default()).unwrap()
-        };
-        // The one that looks down goes up: beyond one that is at most that high.
+        // It goes up: beyond one that is at most that high.
         for height in [-0.1, 0.0, 0.01] {
-            let MovedApart { apart, left } = found(height);
+            let MovedApart { apart, left } = found(&sheet(height));
             assert!(left.is_empty() && apart.iter().all(|place| place.moved.z > height), "{height}: {left:?}");
         }
-        // Farther it does not go: what is told then is that it is below.
-        let MovedApart { apart, left } = found(0.0195);
-        assert!(left.is_empty() && apart.iter().all(|place| place.moved.z == 0.0), "{left:?}");
-        assert!(found(0.05).apart.iter().all(|place| place.moved.z < 0.05));
-        let none = Patches::new(&[], &Run::default()).unwrap();
-        let moves = Moves { by: 0.1, least: 0.0, small: 0.1 };
-        assert!(none.moved_apart(&up, moves, &Run::default()).unwrap().apart.is_empty());
+        // Farther it does not go: what is told then is that it is below, as it is where it was.
+        for height in [0.0195, 0.0205, 0.05] {
+            let MovedApart { apart, left } = found(&sheet(height));
+            assert!(left.is_empty() && apart.iter().all(|place| place.moved.z < height), "{height}: {left:?}");
+            assert!(!apart.is_empty(), "{height}");
+        }
+        assert!(found(&[]).apart.is_empty());
+    }
+
+    #[test]
+    fn what_is_beside_one_patch_is_no_deeper() {
+        // On a sheet, below another one that is as far as it goes.
+        let MovedApart { apart, left } = found(&[sheet(0.0), sheet(0.02)].concat());
+        assert!(left.is_empty() && apart.is_empty(), "{left:?} {apart:?}");
+    }
+
+    #[test]
+    fn along_edges_parts_are_moved_off_both_faces() {
+        // A block's edge in a groove, of other triangles.
+        let block = |steps: usize| {
+            let top = square(DVec3::ZERO, [-DVec3::X, -DVec3::Y], steps);
+            [top, square(DVec3::ZERO, [-DVec3::Y, -DVec3::Z], steps)].concat()
+        };
+        let groove: Vec<Patch> = block(7)
+            .iter()
+            .map(|patch| {
+                let [a, b, c] = patch.corners;
+                Patch::flat([a, c, b])
+            })
+            .collect();
+        let moves = Moves { by: 0.02, least: 0.001, small: 0.01 };
+        let found = patches(&block(5)).moved_apart(&patches(&groove), moves, &Run::default()).unwrap();
+        // None is divided.
+        assert_eq!((found.apart.len(), found.left.len()), (100, 0));
+        assert!(found.apart.iter().all(|place| place.moved.x < 0.0 && place.moved.z < 0.0));
     }
 }
