@@ -97,20 +97,33 @@ fn refine(program: &Program, start: DVec3, p: DVec3, size: f64) -> Option<DVec3>
     Some(x)
 }
 
-/// A point of the surface near `x`, by Newton steps along the gradient.
+/// A point of the surface near `x`, by Newton steps along the gradient, or along a ridge that they
+/// went over: at a rim that ends in a cusp slopes have no bound, and what is left of both sides' is
+/// the slope along the rim's plane.
 fn onto_surface(program: &Program, mut x: DVec3, size: f64) -> Option<DVec3> {
+    let mut last = DVec3::ZERO;
     for _ in 0..24 {
         let (value, gradient) = program.gradient(x);
-        let squared = gradient.length_squared();
+        // Beyond a rim steps over it are short as well.
+        let is_known = last.dot(gradient) > 0.0;
+        let way = if last.dot(gradient) < 0.0 { shortest(last, gradient) } else { gradient };
+        last = gradient;
+        let squared = way.length_squared();
         if squared < 1e-24 {
             return None;
         }
-        let step = (value / squared) * gradient;
+        let step = (value / squared) * way;
         // A step longer than the solid says that the slope is of no use here.
         x -= step.clamp_length_max(0.25 * size);
-        if step.length() < 1e-14 * size {
+        if is_known && step.length() < 1e-14 * size {
             return Some(x);
         }
     }
     (program.value(x).abs() < 1e-10 * size).then_some(x)
+}
+
+/// The shortest vector between two.
+fn shortest(a: DVec3, b: DVec3) -> DVec3 {
+    let way = b - a;
+    a + (-a.dot(way) / way.length_squared()).clamp(0.0, 1.0) * way
 }
