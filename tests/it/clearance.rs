@@ -226,6 +226,8 @@ fn a_bolt_in_its_nut_runs_free_touches_or_is_too_thick() {
     // The thread is larger by as much along its axis and across it: its corners are the deepest.
     let deepest = 0.1 * f64::sqrt(2.0);
     assert!(found.overlaps && (found.depth - deepest).abs() <= found.depth_error + found.tolerance, "{found:?}");
+    // The overlap is thin all over.
+    assert!(found.volume_error < 0.1 * found.volume, "{found:?}");
 }
 
 /// A spur gear with involute teeth, the first in the middle of +x.

@@ -96,7 +96,8 @@ pub use minimal_surface::{Grading, MinimalSurface};
 pub use network_lattice::NetworkLattice;
 pub use number::{Joined, Number};
 pub use patches::{
-    Between, Foot, Loss, MeshLeaf, MovedApart, Moves, OpenEdges, Patch, Patches, Place, SurfaceDistance, Walls,
+    Between, Foot, Loss, MeshLeaf, MovedApart, Moves, OpenEdges, Patch, Patches, Place, Subpatch, SurfaceDistance,
+    Walls,
 };
 pub use placement::{Placement, smallest_stretch};
 pub use points::{

@@ -61,7 +61,7 @@ fn open(from: &Side<'_>, to: &Side<'_>) -> f64 {
     let sizes: f64 = [from, to].iter().map(|side| side.surface.patches.bounds().longest_side()).sum();
     // Where it is in doubt a surface may be nearer by that much in any case.
     let doubt = |side: &Side<'_>| if side.is_known { 0.0 } else { side.exactness() };
-    let [fine, coarse] = [3.0 * (from.fineness() + to.fineness()), doubt(from) + doubt(to)];
+    let [fine, coarse] = [2.0 * (from.fineness() + to.fineness()), doubt(from) + doubt(to)];
     fine.max(coarse) + OF_SIZES * sizes
 }
 

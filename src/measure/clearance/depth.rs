@@ -66,7 +66,7 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
             }
             Node::Piece(piece, true) => {
                 divided += 1;
-                for part in piece.divided(&from.surface.patches, |p| search.below(p)) {
+                for part in piece.divided(|p| search.below(p)) {
                     if search.learn(&part) {
                         search.add(part, true, bound);
                     }
@@ -184,9 +184,9 @@ impl Search<'_> {
     }
 
     fn add(&mut self, piece: Piece, is_numbered: bool, above: f64) {
-        let off = piece.off(&self.from.surface.patches);
-        let own = Bounds::from_points(piece.points).inflate(off);
-        let (middle, side) = (piece.middle(), piece.longest_side() / 3f64.sqrt());
+        let off = piece.part.sag;
+        let own = Bounds::from_points(piece.part.points).inflate(off);
+        let (middle, side) = (piece.middle(), piece.part.longest_side() / 3f64.sqrt());
         let mut most = above.min(self.out(&own));
         if is_numbered {
             // Depths change by as much as points are apart at most.
@@ -196,7 +196,7 @@ impl Search<'_> {
         if most <= self.enough() {
             return;
         }
-        if let Some([bound, far]) = self.bound(middle, side + off, &piece.points) {
+        if let Some([bound, far]) = self.bound(middle, side + off, &piece.part.points) {
             // Triangles tell this sooner than how deep corners are.
             if self.to.is_known && far <= side + off + self.enough() && self.is_shallow(&piece) {
                 return;

@@ -76,7 +76,9 @@ pub(super) fn entry(
     };
     let [(off, mut open), (off_other, others)] = sides.map(astray);
     open.extend(others);
-    let (mut left, mut asked) = (deepest + off + off_other, open.len());
+    // Of surfaces that are apart, in doubt as they are, neither goes into the other.
+    let as_patches = if deepest > 0.0 { deepest + off + off_other } else { 0.0 };
+    let (mut left, mut asked) = (as_patches, open.len());
     let mut levels = Levels::new(run);
     while !open.is_empty() {
         run.check()?;

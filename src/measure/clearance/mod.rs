@@ -36,7 +36,7 @@ const AT_ONCE: usize = 256;
 
 /// How the volume of an overlap is found: in cells that are large at first, as most of them have
 /// one of the surfaces only.
-const VOLUME: Effort = Effort { tolerance: 0.02, first: 4.0, most: 1 << 14 };
+const VOLUME: Effort = Effort { tolerance: 0.02, first: 4.0, most: 1 << 18 };
 
 /// How far two solids are apart, or how much they overlap: see [`Solid::clearance`].
 #[derive(Clone, Copy, Debug, PartialEq)]

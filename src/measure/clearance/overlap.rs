@@ -64,14 +64,14 @@ pub(super) fn is_outside_beside(
     by: f64,
     outside: &mut Option<DVec3>,
 ) -> bool {
-    let (patches, others) = (&from.surface.patches, &to.surface.patches);
+    let others = &to.surface.patches;
     let moved = piece.moved(by);
-    let rounding = piece.off(patches) + from.fineness() + to.fineness();
+    let rounding = piece.part.sag + from.fineness() + to.fineness();
     // What meets no triangle is on one side of them, as is what a path leads to that meets none. From
     // a surface beside its own a piece gets no farther than it is moved.
     if rounding < by.abs() && others.is_beyond(moved, rounding) {
         let middle = moved.iter().sum::<DVec3>() / 3.0;
-        let beside = outside.filter(|p| p.distance(middle) <= BESIDE * piece.longest_side());
+        let beside = outside.filter(|p| p.distance(middle) <= BESIDE * piece.part.longest_side());
         let is_beside = beside.is_some_and(|p| others.is_beyond([p, middle, moved[0]], rounding));
         if !is_beside && to.program.value(middle) > 0.0 {
             return false;
@@ -79,7 +79,7 @@ pub(super) fn is_outside_beside(
         *outside = Some(middle);
         return true;
     }
-    let zone = piece.zone(patches, by * piece.normal());
+    let zone = piece.zone(by * piece.normal());
     let [x, y, z] = zone.hull();
     let hull = Bounds::new(DVec3::new(x.lo(), y.lo(), z.lo()), DVec3::new(x.hi(), y.hi(), z.hi()));
     !hull.intersects(&others.bounds().inflate(by.abs())) || to.program.range_zone(&zone).hi() <= 0.0
@@ -121,7 +121,7 @@ fn samples(from: &Side<'_>, to: &Side<'_>, most: usize) -> Vec<Place> {
         bounds.contains(point).then(|| Place {
             point,
             moved: point,
-            reach: Piece::whole(own, n).reach(own),
+            reach: Piece::whole(own, n).reach(),
             corners: None,
             sag: 0.0,
         })

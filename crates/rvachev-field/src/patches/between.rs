@@ -8,7 +8,8 @@ use glam::DVec3;
 use rvachev_num::{Cancelled, Run};
 
 use super::Patches;
-use super::hull::{Item, Part, What, is_opened};
+use super::hull::{Item, What, is_opened};
+use super::subpatch::Subpatch;
 use super::triangles;
 
 /// After so many comparisons nothing more is opened, and what is known then is what is told.
@@ -141,7 +142,7 @@ impl Search<'_> {
     }
 
     /// Compares triangles.
-    fn compare(&mut self, own: &Part, item: usize) {
+    fn compare(&mut self, own: &Subpatch, item: usize) {
         let What::Part(other) = &self.items[item].what else { return };
         let (square, point) = triangles::nearest(own.points, other.points);
         let (between, sag) = (square.sqrt(), own.sag + other.sag);

@@ -16,6 +16,7 @@ use super::Patches;
 use super::disc::Cylinder;
 use super::face::double;
 use super::hierarchy::{Node, PARENT};
+use super::subpatch::Subpatch;
 use super::triangles;
 
 /// A box with its disc, or a ball where there is none, in length units.
@@ -87,43 +88,10 @@ pub(super) struct Item {
 #[derive(Clone, Copy)]
 pub(super) enum What {
     Node(u32),
-    Part(Part),
+    Part(Subpatch),
 }
 
-/// A part of a patch.
-#[derive(Clone, Copy)]
-pub(super) struct Part {
-    /// Its corners.
-    pub(super) points: [DVec3; 3],
-    /// How far the middles of its sides are off the straight lines.
-    bends: [DVec3; 3],
-    /// It is no farther off its triangle.
-    pub(super) sag: f64,
-}
-
-impl Part {
-    /// Its four parts: the sides of each are parallel to its own and half as long, so that they
-    /// bend by a quarter.
-    fn divided(&self) -> [Part; 4] {
-        let ends = self.points;
-        let middles = [0, 1, 2].map(|k| 0.5 * (ends[k] + ends[(k + 1) % 3]) + self.bends[k]);
-        // With the side that the first one is parallel to.
-        let of = |points: [DVec3; 3], side: usize| {
-            let bends = [0, 1, 2].map(|k| 0.25 * self.bends[(side + k) % 3]);
-            Part { points, bends, sag: 0.25 * self.sag }
-        };
-        let corner = |k: usize| of([ends[k], middles[k], middles[(k + 2) % 3]], k);
-        [corner(0), corner(1), corner(2), of(middles, 2)]
-    }
-
-    pub(super) fn longest_side(&self) -> f64 {
-        (0..3).map(|k| self.points[k].distance(self.points[(k + 1) % 3])).fold(0.0, f64::max)
-    }
-
-    pub(super) fn moved(&self, by: DVec3) -> Part {
-        Part { points: self.points.map(|p| p + by), ..*self }
-    }
-
+impl Subpatch {
     pub(super) fn item(self) -> Item {
         let [a, b, c] = self.points;
         let centre = (a + b + c) / 3.0;
@@ -149,7 +117,7 @@ impl Part {
 impl Patches {
     /// Whether no point of a triangle is within a length of the patches.
     pub fn is_beyond(&self, triangle: [DVec3; 3], length: f64) -> bool {
-        let own = Part { points: triangle, bends: [DVec3::ZERO; 3], sag: 0.0 };
+        let own = Subpatch::flat(triangle);
         let (hull, least) = (own.item().hull, length * length);
         let is_apart = |item: &Item| match &item.what {
             _ if hull.gap(&item.hull, least) >= least => true,
@@ -166,7 +134,7 @@ impl Patches {
             }
             if count >= PARENT {
                 open.extend([first, first + 1]);
-            } else if !(first..first + count).all(|at| is_apart(&self.whole(at).item())) {
+            } else if !(first..first + count).all(|at| is_apart(&self.whole(at as usize).item())) {
                 return false;
             }
         }
@@ -203,10 +171,10 @@ impl Patches {
                 if count >= PARENT {
                     into.extend([first, first + 1].map(|at| self.node(at)));
                 } else {
-                    into.extend((first..first + count).map(|at| self.whole(at).item()));
+                    into.extend((first..first + count).map(|at| self.whole(at as usize).item()));
                 }
             }
-            What::Part(part) => into.extend(part.divided().map(Part::item)),
+            What::Part(part) => into.extend(part.divided().map(Subpatch::item)),
         }
     }
 
@@ -222,18 +190,6 @@ impl Patches {
                 self.frame.outward(double(self.faces[node.first as usize].a))
             }
         }
-    }
-
-    /// A whole patch.
-    fn whole(&self, at: u32) -> Part {
-        let (face, sides, unit) = (&self.faces[at as usize], &self.sides[at as usize], self.frame.unit);
-        let [a, e, f] = [face.a, sides.e, sides.f].map(double);
-        let points = [a, a + e, a + f].map(|p| self.frame.outward(p));
-        let bends = self.quadratics.get(at as usize).map_or([DVec3::ZERO; 3], |quadratic| {
-            let [c, d, e] = [quadratic.c, quadratic.d, quadratic.e].map(|by| 0.25 * unit * double(by));
-            [c, e + c + d, d]
-        });
-        Part { points, bends, sag: unit * f64::from(face.sag) }
     }
 }
 

@@ -54,6 +54,7 @@ mod plane;
 mod room;
 mod search;
 mod solid;
+mod subpatch;
 mod support;
 mod surface_distance;
 #[cfg(test)]
@@ -78,6 +79,7 @@ pub use self::inscribed::Walls;
 pub use self::moved_apart::{MovedApart, Moves, Place};
 pub use self::patch::Patch;
 pub use self::solid::{MeshLeaf, OpenEdges};
+pub use self::subpatch::Subpatch;
 pub use self::surface_distance::SurfaceDistance;
 
 /// The nearest point of a surface.

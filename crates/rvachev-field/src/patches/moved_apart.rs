@@ -14,7 +14,8 @@ use glam::DVec3;
 use rvachev_num::{Cancelled, Run};
 
 use super::Patches;
-use super::hull::{Hull, Item, Part, What, is_opened};
+use super::hull::{Hull, Item, What, is_opened};
+use super::subpatch::Subpatch;
 use super::triangles;
 
 /// After so many comparisons no part is divided any more.
@@ -143,9 +144,9 @@ impl Search<'_> {
     }
 
     /// A part, if it is apart from all that is near where it is moved to.
-    fn moved(&self, part: &Part, near: &[usize]) -> Option<Place> {
+    fn moved(&self, part: &Subpatch, near: &[usize]) -> Option<Place> {
         let Moves { by, least, .. } = self.moves;
-        let far = |moved: &Part, other: &Part| {
+        let far = |moved: &Subpatch, other: &Subpatch| {
             triangles::nearest(moved.points, other.points).0.sqrt() - moved.sag - other.sag >= least
         };
         self.ways(-part.item().hull.normal, near).into_iter().find_map(|way| {
@@ -160,7 +161,7 @@ impl Search<'_> {
     }
 
     /// Whether all of a part is as near to one of the other patches as parts are moved.
-    fn is_beside(&self, part: &Part, near: &[usize]) -> bool {
+    fn is_beside(&self, part: &Subpatch, near: &[usize]) -> bool {
         near.iter().any(|item| match &self.items[*item].what {
             What::Part(other) => {
                 let most = self.moves.by - part.sag - other.sag;
@@ -188,7 +189,7 @@ impl Search<'_> {
     }
 }
 
-fn place(part: &Part, moved: &Part) -> Place {
+fn place(part: &Subpatch, moved: &Subpatch) -> Place {
     let [point, moved] = [part, moved].map(|own| own.points.iter().sum::<DVec3>() / 3.0);
     let reach = part.item().hull.size + point.distance(moved);
     Place { point, moved, reach, corners: Some(part.points), sag: part.sag }
