@@ -32,7 +32,7 @@ use super::signed::Signed;
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::VALUE_LIMIT;
 use rvachev_field::kernel::{distinct, repeat};
-use rvachev_field::{AnyField, Chunk, Layer, Way, Zone, steep_slopes};
+use rvachev_field::{AnyField, Chunk, EmptyBalls, Layer, Way, Zone, steep_slopes};
 use rvachev_num::symbol::Symbol;
 
 /// D counts up to this part of the radius.
@@ -400,6 +400,14 @@ impl AnyField for Fill {
             (dx[i], dy[i], dz[i]) = (scaled.x as f32, scaled.y as f32, scaled.z as f32);
         }
         [value, dx, dy, dz].into_iter().for_each(|list| repeat(list, count));
+    }
+
+    fn is_blend(&self) -> bool {
+        true
+    }
+
+    fn empty_balls(&self) -> Option<&dyn EmptyBalls> {
+        Some(self)
     }
 
     fn cost(&self) -> usize {

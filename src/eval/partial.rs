@@ -16,6 +16,9 @@ use super::program::{Edge, Node, Program, Region};
 use crate::Bounds;
 use rvachev_field::{Pieces, Zone};
 
+/// Leaves whose signs are known, by their nodes, and whether these are inside.
+pub(super) type Given = Vec<(usize, bool)>;
+
 /// A program in parts.
 pub(crate) struct Partial {
     /// The axes of the world that the leaf depends on.
@@ -39,26 +42,31 @@ impl Program {
                 continue;
             }
             let axes = [0, 1, 2].map(|axis| axes[axis] || ends(axis));
-            let [Some(outside), Some(inside)] = [false, true].map(|sign| self.given((at, sign), bounds)) else {
+            let [Some(outside), Some(inside)] = [false, true].map(|sign| self.given(vec![(at, sign)], bounds)) else {
                 continue;
             };
-            let leaf = vec![Node::leaf(leaf)];
-            let leaf = Program::assemble(self.scene.clone(), leaf, Vec::new(), Edge::new(0), self.simpler.to_vec());
-            return Some(Partial { axes, leaf, sides: [outside, inside] });
+            return Some(Partial { axes, leaf: self.of_leaf(leaf), sides: [outside, inside] });
         }
         None
     }
 
-    /// What `bounds` hold of the solid where the leaf of a node is inside or outside; `None` if its
-    /// sign does not tell.
-    fn given(&self, given: (usize, bool), bounds: &Bounds) -> Option<Region> {
+    /// One of its leaves.
+    pub(super) fn of_leaf(&self, leaf: u32) -> Program {
+        let nodes = vec![Node::leaf(leaf)];
+        Program::assemble(self.scene.clone(), nodes, Vec::new(), Edge::new(0), self.simpler.to_vec())
+    }
+
+    /// What `bounds` hold of the solid where the leaves of nodes are inside or outside; `None` if
+    /// their signs do not tell.
+    pub(super) fn given(&self, given: Given, bounds: &Bounds) -> Option<Region> {
         let world = &Pieces::one(Zone::of_bounds(bounds));
         let zones = self.zones(world);
         let mut pass = Pass::new(self, &zones, world);
         pass.by_boxes = true;
-        pass.given = Some(given);
+        pass.given = given;
         pass.run(Asked { sign: true, ..Asked::default() });
-        (!pass.is_value(given.0)).then(|| self.region(self.found(pass)))
+        let is_told = pass.given.iter().all(|(at, _)| !pass.is_value(*at));
+        is_told.then(|| self.region(self.found(pass)))
     }
 }
 

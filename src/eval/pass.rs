@@ -4,6 +4,7 @@
 use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
+use super::partial::Given;
 use super::program::{Edge, Kind, Node, Program};
 use super::ranges::{hull_of, joined};
 use super::scene::Instance;
@@ -64,8 +65,8 @@ pub(super) struct Pass<'a> {
     pub(super) world: &'a Pieces,
     /// Whether of a leaf that is not far by its box no more than one value is asked.
     pub(super) by_boxes: bool,
-    /// A leaf whose sign is known beforehand, by its node.
-    pub(super) given: Option<(usize, bool)>,
+    /// The leaves whose signs are known beforehand.
+    pub(super) given: Given,
     asked: Vec<Asked>,
     /// The operands of long joins that are near.
     near: Vec<Option<Vec<u32>>>,
@@ -88,7 +89,7 @@ impl<'a> Pass<'a> {
             zones,
             world,
             by_boxes: false,
-            given: None,
+            given: Vec::new(),
             asked: vec![Asked::default(); count],
             near: vec![None; count],
             signs: vec![Sign::Unknown; count],
@@ -176,11 +177,9 @@ impl<'a> Pass<'a> {
         let program = self.program;
         let node = &program.nodes[at];
         match &node.kind {
-            Kind::Leaf(leaf) => match self.given {
-                Some((given, inside)) if given == at => {
-                    self.signs[at] = if inside { Sign::Positive } else { Sign::Negative };
-                }
-                _ => self.leaf(at, *leaf),
+            Kind::Leaf(leaf) => match self.given.iter().find(|(given, _)| *given == at) {
+                Some((_, inside)) => self.signs[at] = if *inside { Sign::Positive } else { Sign::Negative },
+                None => self.leaf(at, *leaf),
             },
             Kind::Join { rule, .. } if !value && !rule.reads_values() => {
                 let near = self.near[at].take();

@@ -307,6 +307,26 @@ impl Mode<4> for Slopes {
     }
 }
 
+/// Balls in which no value is above 0: radii, and middles. Of one leaf in the world.
+struct Balls;
+
+impl Mode<4> for Balls {
+    type E = f32;
+    const COORDINATES: usize = 3;
+
+    fn leaf(leaf: &LeafStep, _band: f64, points: Points<'_, f32>, _own: &mut [f32], out: [&mut [f32]; 4]) {
+        let chunk = Chunk { points: points.coordinates(), placement: &leaf.placement, out };
+        match leaf.field.empty_balls() {
+            Some(field) => field.empty_balls(chunk),
+            None => chunk.out.into_iter().for_each(|list| list.fill(0.0)),
+        }
+    }
+
+    fn join(_op: Op, _rule: Rule, _negate: bool, _all: [&mut [f32]; 4], _next: [&[f32]; 4]) {}
+
+    fn frame(_frame: &FrameStep, _points: Points<'_, f32>, _own: &mut [f32], _out: &mut [f32]) {}
+}
+
 fn execute<M: Mode<N>, const N: usize>(
     tape: &Tape,
     memory: &mut Memory<M::E>,

@@ -28,6 +28,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 
+use super::fillets::Apart;
 use super::slopes::Known;
 use super::still::Still;
 use crate::eval::{BOXES_AT_ONCE, Bend, Program, Region, Tape};
@@ -42,6 +43,8 @@ pub(super) struct Cells {
     program: Program,
     /// The tree in parts, for parallel rays along which a long leaf does not change.
     still: OnceLock<Option<Box<Still>>>,
+    /// The tree without fillets, and these.
+    apart: OnceLock<Option<Box<Apart>>>,
 }
 
 /// A box of the tree.
@@ -59,6 +62,8 @@ pub(super) struct Cell {
     pub(super) program: Program,
     /// How the program's value bends along rays, where that is known.
     pub(super) bend: Option<Bend>,
+    /// How steep the value is at most, if it tells balls in which nothing is.
+    pub(super) rolled: Option<f64>,
     /// Its length along its longest side, in proportion to that of the solid.
     pub(super) share: f64,
     /// How many leaves the program has.
@@ -114,7 +119,14 @@ impl Cells {
     /// `axes` at first.
     pub(super) fn within(program: &Program, bounds: Bounds, margin: f64, axes: [bool; 3]) -> Cells {
         let around = Around { whole: bounds.longest_side(), margin, cost: usize::MAX, stale: 0, undivided: axes };
-        Cells { root: part(program, bounds, around), bounds, margin, program: program.clone(), still: OnceLock::new() }
+        Cells {
+            root: part(program, bounds, around),
+            bounds,
+            margin,
+            program: program.clone(),
+            still: OnceLock::new(),
+            apart: OnceLock::new(),
+        }
     }
 
     /// The tree in parts, if a long leaf does not change along parallel rays.
@@ -132,6 +144,33 @@ impl Cells {
     /// The tree in parts, if it was asked for and there is one.
     pub(super) fn known_still(&self) -> Option<&Still> {
         self.still.get()?.as_deref()
+    }
+
+    /// The tree without the solid's fillets, and these, if it has some.
+    pub(super) fn apart(&self) -> Option<&Apart> {
+        let apart = self.apart.get_or_init(|| {
+            let fillets = self.program.fillets(&self.bounds)?;
+            Apart::new(fillets, self.bounds, self.margin).map(Box::new)
+        });
+        apart.as_deref()
+    }
+
+    /// The same, if it was asked for.
+    pub(super) fn known_apart(&self) -> Option<&Apart> {
+        self.apart.get()?.as_deref()
+    }
+
+    /// A program as a cell by itself, as far as the box of all reaches, if it does.
+    pub(super) fn part(&self, program: Program) -> Option<Cell> {
+        let around = Around {
+            whole: self.bounds.longest_side(),
+            margin: self.margin,
+            cost: usize::MAX,
+            stale: 0,
+            undivided: [false; 3],
+        };
+        let bounds = around.clipped(&program, &self.bounds);
+        (!bounds.is_empty()).then(|| Cell::new(program, bounds, around))
     }
 
     pub(super) fn root(&self) -> &Part {
@@ -289,7 +328,8 @@ impl Cell {
         let share = bounds.longest_side() / around.whole;
         let (slopes, tape) = (Mutex::new(None), OnceLock::new());
         let (halves, united) = (OnceLock::new(), OnceLock::new());
-        Cell { bounds, program, bend, share, leaves, cost, around, slopes, halves, united, tape }
+        let rolled = program.rolled();
+        Cell { bounds, program, bend, rolled, share, leaves, cost, around, slopes, halves, united, tape }
     }
 
     /// Its length along its longest side.

@@ -27,7 +27,11 @@ impl Cells {
             pending.extend(&halves.parts);
         }
         let sides = self.known_still().map(|still| still.parts().map(Cells::bytes).sum::<usize>());
-        bytes + sides.unwrap_or(0)
+        let apart = self.known_apart().map_or(0, |apart| {
+            let parts = apart.parts().map(|cell| cell.bytes(&mut counted)).sum::<usize>();
+            apart.rest.bytes() + parts
+        });
+        bytes + sides.unwrap_or(0) + apart
     }
 }
 

@@ -54,7 +54,7 @@ pub(super) const SLOPE_ERROR: f32 = 1e-3;
 #[derive(Default)]
 pub(super) struct Marcher {
     pub(super) evaluator: Evaluator,
-    single: [Vec<f32>; 7],
+    pub(super) single: [Vec<f32>; 7],
     pub(super) double: [Vec<f64>; 4],
     near: Vec<Lane>,
     far: Vec<Lane>,
@@ -118,6 +118,9 @@ impl Marcher {
         if job.bend.is_some() {
             self.search_bent(job);
         } else {
+            if job.cell.rolled.is_some() {
+                self.roll(job);
+            }
             self.search_steep(job);
         }
         self.newton(job);
@@ -126,7 +129,7 @@ impl Marcher {
     }
 
     /// The lanes of the spans: those along which g bends downwards start at the near end.
-    fn load(&mut self, job: &Job<'_>) {
+    pub(super) fn load(&mut self, job: &Job<'_>) {
         self.near.clear();
         self.far.clear();
         self.search.clear();
@@ -164,18 +167,7 @@ impl Marcher {
 
     /// Evaluates lanes at `at`, their values alone or with gradients.
     fn evaluate(&mut self, job: &Job<'_>, lanes: &[Lane], alone: bool) {
-        let count = lanes.len();
-        for list in &mut self.single {
-            if list.len() < count {
-                list.resize(count, 0.0);
-            }
-        }
-        let [x, y, z, value, dx, dy, dz] = self.single.each_mut().map(|list| &mut list[..count]);
-        for (((lane, x), y), z) in lanes.iter().zip(&mut *x).zip(&mut *y).zip(&mut *z) {
-            *x = lane.start[0] + lane.at * lane.direction[0];
-            *y = lane.start[1] + lane.at * lane.direction[1];
-            *z = lane.start[2] + lane.at * lane.direction[2];
-        }
+        let [x, y, z, value, dx, dy, dz] = points(&mut self.single, lanes);
         if alone {
             self.evaluator.shortest_values(job.tape, [x, y, z], value);
             [dx, dy, dz].into_iter().for_each(|list| list.fill(f32::NAN));
@@ -337,6 +329,24 @@ impl Marcher {
         lanes.clear();
         self.unique = lanes;
     }
+}
+
+/// Where lanes are at `at`, and lists of as many numbers.
+pub(super) fn points<'a>(lists: &'a mut [Vec<f32>; 7], lanes: &[Lane]) -> [&'a mut [f32]; 7] {
+    let count = lanes.len();
+    for list in &mut *lists {
+        if list.len() < count {
+            list.resize(count, 0.0);
+        }
+    }
+    let mut lists = lists.each_mut().map(|list| &mut list[..count]);
+    let [x, y, z, ..] = &mut lists;
+    for (((lane, x), y), z) in lanes.iter().zip(&mut **x).zip(&mut **y).zip(&mut **z) {
+        *x = lane.start[0] + lane.at * lane.direction[0];
+        *y = lane.start[1] + lane.at * lane.direction[1];
+        *z = lane.start[2] + lane.at * lane.direction[2];
+    }
+    lists
 }
 
 /// Where lanes go from a step.

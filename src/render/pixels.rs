@@ -31,6 +31,18 @@ impl Pixels {
     pub(super) const NONE: Pixels = Pixels([0; TILE as usize]);
     pub(super) const ALL: Pixels = Pixels([u64::MAX; TILE as usize]);
 
+    /// The numbers of the pixels of a tile that is so wide.
+    pub(super) fn numbers(&self, width: u32) -> Vec<u32> {
+        let mut all = Vec::new();
+        for (row, mut bits) in (0..).zip(self.0) {
+            while bits != 0 {
+                all.push(row * width + bits.trailing_zeros());
+                bits &= bits - 1;
+            }
+        }
+        all
+    }
+
     pub(super) fn count(&self, rectangle: Rectangle) -> usize {
         let rows = &self.0[rectangle.top..rectangle.bottom];
         rows.iter().map(|row| (row & rectangle.columns).count_ones() as usize).sum()

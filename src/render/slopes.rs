@@ -71,6 +71,12 @@ impl Known {
     /// Nothing is known.
     pub(super) const ANY: Known = Known { slopes: Slopes::ANY, sides: None };
 
+    /// The value changes by no more than so much per length unit.
+    pub(super) fn steep(most: f64) -> Known {
+        let slopes = Slopes { value: Interval::new(-most, most), ..Slopes::ANY };
+        Known { slopes, sides: None }
+    }
+
     /// What is known of a program along rays in a box with directions from `low` to `high`.
     pub(super) fn of(program: &Program, room: &Bounds, [low, high]: [DVec3; 2]) -> Known {
         let along = [0, 1, 2].map(|axis| Interval::new(low[axis], high[axis]));

@@ -28,9 +28,9 @@ pub(super) struct Tracer {
     surfaces: Vec<Surface>,
     /// Those that see anything.
     hit: Pixels,
-    marcher: Marcher,
-    rays: Vec<Ray>,
-    spans: Vec<Span>,
+    pub(super) marcher: Marcher,
+    pub(super) rays: Vec<Ray>,
+    pub(super) spans: Vec<Span>,
     /// Of those, what is nearer than what they have met.
     nearer: Vec<Span>,
 }
@@ -60,7 +60,9 @@ pub(super) fn divide_top(cells: &Cells, view: &View<'_>, window: &Window) {
             divide(still.leaf.root(), &sees);
             still.sides.iter().flatten().for_each(|side| divide_top(side, view, window));
         }
-        None => divide(cells.root(), &sees),
+        None => {
+            divide(cells.apart().filter(|_| view.inside != Some(true)).map_or(cells, |apart| &apart.rest).root(), &sees)
+        }
     }
 }
 
@@ -112,7 +114,6 @@ impl Tracer {
             }
             return;
         }
-        let Part::Cell(root) = cells.root() else { return };
         let mut alive = Pixels::NONE;
         let bounds = cells.bounds();
         let mut packet = Packet::new(view.rays.meeting_point());
@@ -139,7 +140,37 @@ impl Tracer {
                 }
             }
         }
-        let tie = TIE * bounds.longest_side();
+        match cells.apart().filter(|_| !packet.inside) {
+            None => self.walk(cells, view, tile, packet, alive, surfaces),
+            Some(apart) => {
+                self.walk(&apart.rest, view, tile, packet, alive, surfaces);
+                let rays = alive.numbers(tile.width);
+                let open = self.fillets(cells, apart, &rays, surfaces);
+                self.note(tile, None);
+                let mut again = Pixels::NONE;
+                for ray in open {
+                    let (row, bit) = ((ray / tile.width) as usize, 1 << (ray % tile.width));
+                    again.0[row] |= bit;
+                    self.hit.0[row] &= !bit;
+                    surfaces[ray as usize] = Surface::NONE;
+                }
+                self.walk(cells, view, tile, packet, again, surfaces);
+            }
+        }
+    }
+
+    /// Takes the rays of some pixels through the tree.
+    fn walk(
+        &mut self,
+        cells: &Cells,
+        view: &View<'_>,
+        tile: &Window,
+        packet: Packet,
+        mut alive: Pixels,
+        surfaces: &mut [Surface],
+    ) {
+        let Part::Cell(root) = cells.root() else { return };
+        let tie = TIE * cells.bounds().longest_side();
         let mut pending: Vec<&Cell> = vec![root];
         while let Some(cell) = pending.pop() {
             let Some(rectangle) = view.rectangle(&cell.bounds, tile) else { continue };
@@ -148,7 +179,7 @@ impl Tracer {
                 continue;
             }
             let united = packet.united(cell);
-            let is_whole = united.is_some_and(are_bent);
+            let is_whole = united.is_some_and(are_told);
             let known = if is_whole { Known::ANY } else { packet.slopes(searched(united, cell)) };
             if !packet.inside && united.is_none() && known.slopes.falls {
                 // Seen from behind.
@@ -177,31 +208,53 @@ impl Tracer {
                     self.marcher.march(cells, part, &known, &self.rays, &self.spans, surfaces);
                 }
             }
-            for &ray in &self.marcher.hits {
-                let (row, bit) = ((ray / tile.width) as usize, 1 << (ray % tile.width));
+            self.note(tile, Some(&mut alive));
+        }
+    }
+
+    /// Notes that the pixels whose rays have hit something see it, and that these are done.
+    fn note(&mut self, tile: &Window, mut alive: Option<&mut Pixels>) {
+        for &ray in &self.marcher.hits {
+            let (row, bit) = ((ray / tile.width) as usize, 1 << (ray % tile.width));
+            self.hit.0[row] |= bit;
+            if let Some(alive) = &mut alive {
                 alive.0[row] &= !bit;
-                self.hit.0[row] |= bit;
             }
         }
     }
 
     /// What a list of rays meets, each an origin and a unit direction.
     pub(super) fn list(&mut self, cells: &Cells, rays: &[(DVec3, DVec3)], surfaces: &mut [Surface]) {
-        let bounds = cells.bounds();
         self.rays.clear();
+        let mut inside = false;
         let mut octants: [Vec<u32>; 8] = Default::default();
         for (number, &(origin, direction)) in (0..).zip(rays) {
             let mut ray = Ray::NONE;
             if enters(&mut ray, cells, (origin, direction), None, None) {
                 let octant = (0..3).map(|axis| usize::from(direction[axis] < 0.0) << axis).sum::<usize>();
                 octants[octant].push(number);
+                inside |= ray.inside;
             }
             self.rays.push(ray);
         }
-        let Part::Cell(root) = cells.root() else { return };
         let eye = rays.first().map(|ray| ray.0).filter(|eye| rays.len() > 1 && rays.iter().all(|ray| ray.0 == *eye));
-        let tie = TIE * bounds.longest_side();
-        let mut done = vec![false; rays.len()];
+        let Some(apart) = cells.apart().filter(|_| !inside) else {
+            return self.walk_list(cells, octants, eye, surfaces);
+        };
+        let all = octants.concat();
+        let mut again = octants.clone();
+        self.walk_list(&apart.rest, octants, eye, surfaces);
+        let open = self.fillets(cells, apart, &all, surfaces);
+        open.iter().for_each(|ray| surfaces[*ray as usize] = Surface::NONE);
+        again.iter_mut().for_each(|rays| rays.retain(|ray| open.binary_search(ray).is_ok()));
+        self.walk_list(cells, again, eye, surfaces);
+    }
+
+    /// Takes rays of a list, by the octants of their directions, through the tree.
+    fn walk_list(&mut self, cells: &Cells, octants: [Vec<u32>; 8], eye: Option<DVec3>, surfaces: &mut [Surface]) {
+        let Part::Cell(root) = cells.root() else { return };
+        let tie = TIE * cells.bounds().longest_side();
+        let mut done = vec![false; surfaces.len()];
         for (octant, list) in octants.into_iter().enumerate() {
             // Cells with the rays that may pass them: the list's tail from `first`.
             let mut lists = list;
@@ -223,7 +276,7 @@ impl Tracer {
                 let mut packet = Packet::new(eye);
                 self.spans.iter().for_each(|span| packet.add(&self.rays[span.ray as usize]));
                 let united = packet.united(cell);
-                let is_whole = united.is_some_and(are_bent);
+                let is_whole = united.is_some_and(are_told);
                 let known = if is_whole { Known::ANY } else { packet.slopes(searched(united, cell)) };
                 if !packet.inside && united.is_none() && known.slopes.falls {
                     continue;
@@ -325,6 +378,9 @@ impl Packet {
     /// The slopes of the value that the rays may find in a cell; all, of a cell whose slopes are
     /// not worth knowing.
     fn slopes(&self, cell: &Cell) -> Known {
+        if let Some(steepest) = cell.rolled {
+            return Known::steep(steepest);
+        }
         if cell.bend.is_some() || cell.leaves > MANY || cell.share > COARSE {
             return Known::ANY;
         }
@@ -404,7 +460,7 @@ fn span(bounds: &Bounds, ray: &Ray) -> Option<(f64, f64)> {
 
 /// The part of a ray in a cell that is nearer by `tie` than what the ray has met.
 #[inline(always)]
-fn nearer(cell: &Cell, ray: u32, rays: &[Ray], surfaces: &[Surface], tie: f64) -> Option<Span> {
+pub(super) fn nearer(cell: &Cell, ray: u32, rays: &[Ray], surfaces: &[Surface], tie: f64) -> Option<Span> {
     let at = &rays[ray as usize];
     let (near, far) = span(&cell.bounds, at)?;
     let far = far.min(surfaces[ray as usize].distance - at.base - tie);
@@ -420,9 +476,10 @@ fn searched<'a>(united: Option<&'a [Cell]>, cell: &'a Cell) -> &'a Cell {
     united.and_then(<[Cell]>::last).unwrap_or(cell)
 }
 
-/// Whether all parts of a cell bend one way along rays: to divide it would part them no further.
-fn are_bent(parts: &[Cell]) -> bool {
-    parts.iter().all(|part| part.bend.is_some())
+/// Whether all parts of a cell bend one way along rays, or tell balls in which nothing is: to
+/// divide it would part them no further.
+fn are_told(parts: &[Cell]) -> bool {
+    parts.iter().all(|part| part.bend.is_some() || part.rolled.is_some())
 }
 
 /// Cells of one leaf whose value bends one way are divided down to this part of the whole.
@@ -440,7 +497,7 @@ const NARROW: f64 = 0.1;
 
 /// A crossing of a united operand must be nearer by this part of the whole than one of those before
 /// it.
-const TIE: f64 = 1e-7;
+pub(super) const TIE: f64 = 1e-7;
 
 /// No cell is divided below this part of the whole.
 const FINEST: f64 = 1.0 / 4096.0;

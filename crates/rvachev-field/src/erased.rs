@@ -65,6 +65,14 @@ impl Layer {
     }
 }
 
+/// A field that tells balls in which no value is above 0.
+pub trait EmptyBalls {
+    /// The radius of such a ball for each point, and its middle, in the frame of the points, which
+    /// the placement maps by lengths alone. Where the field is well below 0 the ball holds the
+    /// point, and the farther from it, the farther it reaches.
+    fn empty_balls(&self, chunk: Chunk<'_, f32, 4>);
+}
+
 /// A [`Field`], erased to the evaluations that the engine runs.
 pub trait AnyField: Any + Debug + Send + Sync {
     /// What errors call it.
@@ -221,6 +229,14 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>);
     /// Value and the three derivatives.
     fn gradients(&self, chunk: Chunk<'_, f32, 4>);
+    /// Whether it is what a blend adds between operands, such as a fillet.
+    fn is_blend(&self) -> bool {
+        false
+    }
+    /// What tells balls in which no value is above 0, where that is more than values tell.
+    fn empty_balls(&self) -> Option<&dyn EmptyBalls> {
+        None
+    }
     /// Whether values change as the slopes of `dual_range` say: not those that come of a search.
     fn is_steady(&self) -> bool {
         true

@@ -83,7 +83,7 @@ pub use deform::{
 pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
 pub use ellipsoid::Ellipsoid;
 pub use erase::Erase;
-pub use erased::{AnyField, Chunk, Facets, Layer, chained, steep_slopes};
+pub use erased::{AnyField, Chunk, EmptyBalls, Facets, Layer, chained, steep_slopes};
 pub use fold::{Joinable, Op};
 #[cfg(feature = "formula")]
 pub use formula::{Formula, FormulaError};

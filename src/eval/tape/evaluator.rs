@@ -1,6 +1,6 @@
 //! What runs tapes: the memory that a thread brings.
 
-use super::{Slopes, Tape, UnequalSlices, Values, execute};
+use super::{Balls, Slopes, Tape, UnequalSlices, Values, execute};
 use crate::Bounds;
 
 /// Scratch memory for bulk evaluation, one per thread; it grows to what the largest tape
@@ -127,5 +127,11 @@ impl Evaluator {
     pub(crate) fn shortest_gradients(&mut self, tape: &Tape, points: [&[f32]; 3], out: Gradients<'_>) {
         let Gradients { value, dx, dy, dz } = out;
         execute::<Slopes, 4>(tape, &mut self.single, (&[], f64::INFINITY), points, [value, dx, dy, dz]);
+    }
+
+    /// The radii and middles of balls in which no value is above 0, of a program that is
+    /// [`rolled`](crate::eval::Program::rolled).
+    pub(crate) fn empty_balls(&mut self, tape: &Tape, points: [&[f32]; 3], [radius, x, y, z]: [&mut [f32]; 4]) {
+        execute::<Balls, 4>(tape, &mut self.single, (&[], f64::INFINITY), points, [radius, x, y, z]);
     }
 }

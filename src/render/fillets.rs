@@ -1,0 +1,92 @@
+//! Rays by what a solid is without its fillets.
+//!
+//! ```text
+//!           |    /|         Most rays meet the rest where no fillet is, and balls that roll there
+//!     ray   |   / |         tell so (`roll`): those are done without a value of the fillet. What meets
+//!     ---------+  |         a fillet before is searched for it, and the few rays of which neither is
+//!     ______|_/___|___      told are taken through the whole tree.
+//! ```
+
+use super::cells::{Cell, Cells};
+use super::gbuffer::Surface;
+use super::march::Marcher;
+use super::slopes::Known;
+use super::tile::{TIE, Tracer, nearer};
+use crate::Bounds;
+use crate::eval::{Fillets, Region};
+
+/// A tree in parts.
+pub(super) struct Apart {
+    /// Nothing if fillets are all there is.
+    pub(super) rest: Cells,
+    added: Vec<Cell>,
+    are_operands: bool,
+    cut: Vec<Cell>,
+}
+
+impl Apart {
+    /// `None` where the rest goes on beyond the bounds, or is nothing.
+    pub(super) fn new(fillets: Fillets, bounds: Bounds, margin: f64) -> Option<Apart> {
+        let Fillets { rest: Region::Surface(rest), added, are_operands, cut } = fillets else { return None };
+        if !bounds.contains_bounds(&rest.reach()) {
+            return None;
+        }
+        let rest = Cells::within(&rest, bounds, margin, [true; 3]);
+        let [added, cut] = [added, cut].map(|all| all.into_iter().filter_map(|part| rest.part(part)).collect());
+        Some(Apart { rest, added, are_operands, cut })
+    }
+
+    /// The parts beside the rest.
+    pub(super) fn parts(&self) -> impl Iterator<Item = &Cell> {
+        self.added.iter().chain(&self.cut)
+    }
+}
+
+impl Tracer {
+    /// Takes rays that have met what there is of the rest on to fillets. What they meet goes to
+    /// `surfaces`, and the rays to the hits; gives those of which nothing is told.
+    pub(super) fn fillets(&mut self, cells: &Cells, apart: &Apart, rays: &[u32], surfaces: &mut [Surface]) -> Vec<u32> {
+        let tie = TIE * cells.bounds().longest_side();
+        self.marcher.hits.clear();
+        let mut open = Vec::new();
+        for part in &apart.added {
+            self.spans.clear();
+            self.spans.extend(rays.iter().filter_map(|ray| nearer(part, *ray, &self.rays, surfaces, tie)));
+            if self.spans.is_empty() {
+                continue;
+            }
+            let known = part.rolled.map_or(Known::ANY, Known::steep);
+            if apart.are_operands {
+                self.marcher.march(cells, part, &known, &self.rays, &self.spans, surfaces);
+            } else {
+                open.extend(self.marcher.unrolled(cells, part, &known, &self.rays, &self.spans));
+            }
+        }
+        for part in &apart.cut {
+            let met = rays.iter().filter(|ray| surfaces[**ray as usize].is_hit());
+            let point = |ray: &u32| {
+                let own = &self.rays[*ray as usize];
+                own.origin + (surfaces[*ray as usize].distance - own.base) * own.direction
+            };
+            let near: Vec<(u32, glam::DVec3)> =
+                met.map(|ray| (*ray, point(ray))).filter(|(_, p)| part.bounds.contains(*p)).collect();
+            open.extend(self.marcher.filled(part, &near));
+        }
+        open.sort_unstable();
+        open.dedup();
+        open
+    }
+}
+
+impl Marcher {
+    /// The points that a fillet may be at, by the numbers of their rays.
+    fn filled(&mut self, part: &Cell, points: &[(u32, glam::DVec3)]) -> Vec<u32> {
+        let (tape, count) = (part.tape(), points.len());
+        let axis =
+            |axis: usize| -> Vec<f32> { points.iter().map(|(_, p)| (*p - tape.origin())[axis] as f32).collect() };
+        let (x, y, z, mut values) = (axis(0), axis(1), axis(2), vec![0.0; count]);
+        self.evaluator.values_within(tape, 2.0 * tape.roundoff(), [&x, &y, &z], &mut values);
+        let is_told = |value: f32| f64::from(value) < -tape.roundoff();
+        points.iter().zip(values).filter(|(_, value)| !is_told(*value)).map(|((ray, _), _)| *ray).collect()
+    }
+}
