@@ -17,6 +17,8 @@
 //! nearest crossing counts: nothing is divided further to part the leaves. What else is united with
 //! them, as the material of a fillet is, and takes long is looked for last, up to that crossing.
 //!
+//! Where fillets are among the solid's parts, most rays go through a tree without them (`fillets`).
+//!
 //! All programs of a solid agree on the sign of any point, and the parts of a ray in the boxes
 //! abut to the bit, as the crossings with a plane are computed alike on both sides of it: a
 //! crossing of the surface at the border of two cells belongs to one of them and is never lost.

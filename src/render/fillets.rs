@@ -7,6 +7,8 @@
 //!     ______|_/___|___      told are taken through the whole tree.
 //! ```
 
+use glam::DVec3;
+
 use super::cells::{Cell, Cells};
 use super::gbuffer::Surface;
 use super::march::Marcher;
@@ -14,6 +16,9 @@ use super::slopes::Known;
 use super::tile::{TIE, Tracer, nearer};
 use crate::Bounds;
 use crate::eval::{Fillets, Region};
+
+/// What rays meet is where it is told to be to this part of the solid's size.
+const EXACT: f64 = 1e-4;
 
 /// A tree in parts.
 pub(super) struct Apart {
@@ -68,8 +73,9 @@ impl Tracer {
                 let own = &self.rays[*ray as usize];
                 own.origin + (surfaces[*ray as usize].distance - own.base) * own.direction
             };
-            let near: Vec<(u32, glam::DVec3)> =
-                met.map(|ray| (*ray, point(ray))).filter(|(_, p)| part.bounds.contains(*p)).collect();
+            let room = part.bounds.inflate(EXACT * cells.bounds().longest_side());
+            let near: Vec<(u32, DVec3)> =
+                met.map(|ray| (*ray, point(ray))).filter(|(_, p)| room.contains(*p)).collect();
             open.extend(self.marcher.filled(part, &near));
         }
         open.sort_unstable();
@@ -80,7 +86,7 @@ impl Tracer {
 
 impl Marcher {
     /// The points that a fillet may be at, by the numbers of their rays.
-    fn filled(&mut self, part: &Cell, points: &[(u32, glam::DVec3)]) -> Vec<u32> {
+    fn filled(&mut self, part: &Cell, points: &[(u32, DVec3)]) -> Vec<u32> {
         let (tape, count) = (part.tape(), points.len());
         let axis =
             |axis: usize| -> Vec<f32> { points.iter().map(|(_, p)| (*p - tape.origin())[axis] as f32).collect() };
@@ -88,5 +94,29 @@ impl Marcher {
         self.evaluator.values_within(tape, 2.0 * tape.roundoff(), [&x, &y, &z], &mut values);
         let is_told = |value: f32| f64::from(value) < -tape.roundoff();
         points.iter().zip(values).filter(|(_, value)| !is_told(*value)).map(|((ray, _), _)| *ray).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::job::Ray;
+    use crate::{Blend, Solid};
+
+    #[test]
+    fn hits_just_beyond_the_box_of_what_is_cut_off_are_asked_about() {
+        let plate = Solid::cuboid([2.0, 2.0, 0.4]);
+        let solid = plate.difference_with(&Solid::cylinder(0.5, 2.0), Blend::Fillet { radius: 0.1 });
+        let program = solid.surface_program().expect("the solid is valid");
+        let cells = Cells::new(&program, &solid.bounds().expect("the solid is valid"));
+        let apart = cells.apart().expect("it has a fillet");
+        // Down to the round rim, to where the sharp edge would be, and beside it.
+        let mut tracer = Tracer::default();
+        for x in [0.52, 0.9] {
+            let (origin, direction) = (DVec3::new(x, 0.0, 3.0), -DVec3::Z);
+            tracer.rays.push(Ray { origin, direction, inverse: direction.recip(), base: 0.0, inside: false });
+        }
+        let mut surfaces = [Surface { distance: 2.8 - 1e-6, ..Surface::NONE }; 2];
+        assert_eq!(tracer.fillets(&cells, apart, &[0, 1], &mut surfaces), [0]);
     }
 }

@@ -27,6 +27,7 @@ use super::cells::{Cell, Cells};
 use super::exact::Owners;
 use super::gbuffer::Surface;
 use super::job::{Job, Lane, Local, Outcome, Ray, Span};
+use super::roll::Ball;
 use super::slopes::{Known, Slopes};
 use crate::eval::{Bend, Care, Evaluator, Gradients, first_hit};
 
@@ -70,6 +71,8 @@ pub(super) struct Marcher {
     pub(super) crossed: Vec<Walk>,
     pub(super) crossings: Vec<Crossing>,
     pub(super) owners: Owners,
+    /// Balls that rays have met.
+    pub(super) known: Vec<Ball>,
     /// The rays that have hit something.
     pub(super) hits: Vec<u32>,
 }

@@ -18,6 +18,18 @@ use super::slopes::Known;
 /// So many balls lead a ray on, before what is left of it is searched in steps.
 const BALLS: usize = 24;
 
+/// One ray of so many is led first, and the balls that it meets lead those beside it.
+const LEADERS: usize = 4;
+
+/// A ball in which nothing is.
+#[derive(Clone, Copy)]
+pub(super) struct Ball {
+    /// The span of the lane that met it.
+    span: u32,
+    middle: Vec3,
+    radius: f32,
+}
+
 impl Marcher {
     /// The rays that balls do not lead to the ends of their spans.
     pub(super) fn unrolled(
@@ -37,7 +49,26 @@ impl Marcher {
 
     /// Leaves out of the lanes to be searched what is in balls without anything in them.
     pub(super) fn roll(&mut self, job: &Job<'_>) {
-        let mut lanes = std::mem::take(&mut self.search);
+        let lanes = std::mem::take(&mut self.search);
+        self.known.clear();
+        let leaders: Vec<Lane> = lanes.iter().step_by(LEADERS).copied().collect();
+        let mut spans: Vec<u32> = leaders.iter().map(|lane| lane.span).collect();
+        self.lead(job, leaders);
+        self.known.sort_by_key(|ball| ball.span);
+        spans.extend(spans.last().copied());
+        let mut others = Vec::with_capacity(lanes.len());
+        for (i, mut lane) in lanes.into_iter().enumerate().filter(|(i, _)| i % LEADERS != 0) {
+            let beside = [spans[i / LEADERS], spans[i / LEADERS + 1]];
+            let [from, to] = [0, 1].map(|end| self.known.partition_point(|ball| ball.span < beside[end] + end as u32));
+            if !is_led(&mut lane, &self.known[from..to], job.close) {
+                others.push(lane);
+            }
+        }
+        self.lead(job, others);
+    }
+
+    /// Leads lanes from ball to ball.
+    fn lead(&mut self, job: &Job<'_>, mut lanes: Vec<Lane>) {
         for round in 0..BALLS {
             if lanes.is_empty() {
                 break;
@@ -51,7 +82,8 @@ impl Marcher {
                 let [_, _, _, radius, x, y, z] = self.single.each_ref().map(|list| list[i]);
                 let lane = &mut lanes[i];
                 let is_last = lane.at == lane.right;
-                match within(lane, Vec3::new(x, y, z), radius) {
+                let ball = Ball { span: lane.span, middle: Vec3::new(x, y, z), radius };
+                match ball.within(lane).filter(|[enter, leave]| (*enter..*leave).contains(&lane.at)) {
                     Some([enter, _]) if is_last => lane.right = enter,
                     // It is in a fillet, or where one fades away.
                     None if is_last => lane.probe = true,
@@ -61,7 +93,8 @@ impl Marcher {
                         continue;
                     }
                 }
-                if lane.left < lane.right {
+                self.known.push(ball);
+                if lane.right - lane.left > job.close {
                     lanes[kept] = *lane;
                     kept += 1;
                 }
@@ -79,11 +112,29 @@ impl Marcher {
     }
 }
 
-/// Where a lane enters and leaves a ball that its point is in.
-fn within(lane: &Lane, middle: Vec3, radius: f32) -> Option<[f32; 2]> {
-    let (start, direction) = (Vec3::from_array(lane.start), Vec3::from_array(lane.direction));
-    let to = middle - (start + lane.at * direction);
-    let along = to.dot(direction);
-    let half = (radius * radius - (to - along * direction).length_squared()).max(0.0).sqrt();
-    (to.length() < radius).then_some([lane.at + along - half, lane.at + along + half])
+/// Leads a lane on, from both ends, by balls that others have met; whether nothing of it is left,
+/// or what is shorter than crossings are told apart.
+fn is_led(lane: &mut Lane, balls: &[Ball], close: f32) -> bool {
+    for ball in balls.iter().chain(balls) {
+        let Some([enter, leave]) = ball.within(lane) else { continue };
+        if enter <= lane.left {
+            lane.left = lane.left.max(leave);
+        } else if leave >= lane.right {
+            lane.right = lane.right.min(enter);
+        }
+    }
+    lane.at = lane.left;
+    lane.right - lane.left <= close
+}
+
+impl Ball {
+    /// Where a lane enters and leaves it.
+    fn within(&self, lane: &Lane) -> Option<[f32; 2]> {
+        let [start, direction] = [lane.start, lane.direction].map(|v| Vec3::from_array(v).as_dvec3());
+        let to = self.middle.as_dvec3() - start;
+        let along = to.dot(direction);
+        let square = f64::from(self.radius).powi(2) - (to - along * direction).length_squared();
+        let half = square.max(0.0).sqrt();
+        (square > 0.0).then_some([(along - half) as f32, (along + half) as f32])
+    }
 }

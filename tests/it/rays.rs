@@ -315,6 +315,30 @@ fn pictures_see_what_single_rays_hit() {
     }
 }
 
+/// What most rays meet is told without the fillets, which are united with others, cut off, cut into,
+/// or in each other.
+#[test]
+fn pictures_of_fillets_see_what_single_rays_hit() {
+    let fillet = |radius: f64| Blend::Fillet { radius };
+    let plate = Solid::cuboid([2.0, 2.0, 0.4]);
+    let post = Solid::superellipsoid([0.5, 0.5, 1.0], 0.3, 0.7);
+    let wall = Solid::cuboid([0.3, 2.0, 1.2]).translate([-0.7, 0.0, 0.6]);
+    let joint = plate.union_with(&post, fillet(0.15));
+    let solids = [
+        ("plate and post", joint.clone()),
+        ("all inner edges", (&plate | &wall).filleted(0.2)),
+        ("an edge", plate.intersection_with(&post, fillet(0.1))),
+        ("a chamfered edge", plate.intersection_with(&post, Blend::Chamfer { leg: 0.1 })),
+        ("bored through the fillet", &joint - Solid::cylinder(0.2, 3.0).translate([0.6, 0.1, 0.0])),
+        ("large and far", joint.scale(30.0).rotate_x(deg(40.0)).translate([200.0, 0.0, 0.0])),
+    ];
+    for (name, solid) in solids {
+        let bounds = solid.bounds().unwrap();
+        compare_view(name, &solid, &Camera::framing(&bounds));
+        compare_view(name, &solid, &Camera::perspective(bounds.center(), bounds.max, DVec3::Z, deg(100.0)));
+    }
+}
+
 /// Rings and bars of a formula that chooses a lot, as a plate with a hole.
 #[cfg(feature = "formula")]
 #[test]
@@ -402,7 +426,7 @@ fn compare_view(name: &str, solid: &Solid, camera: &Camera) {
     assert!(seen == normal_image(&solid.scene().unwrap(), camera, 3), "{name}");
     let size = solid.bounds().unwrap().longest_side();
     let mut differ = 0;
-    for (i, seen) in seen.iter().enumerate().filter(|(i, _)| i % 37 == 0) {
+    for (i, seen) in seen.iter().enumerate().step_by(37) {
         let (origin, direction) = camera.ray((i % 60) as f64 + 0.5, (i / 60) as f64 + 0.5, 60, 44);
         let hit = solid.raycast(origin, direction).unwrap();
         let distance = hit.map_or(f64::INFINITY, |hit| hit.distance);
