@@ -213,10 +213,6 @@ impl AnyField for Bevel {
         (0..2).fold(found, of_operand)
     }
 
-    fn is_blend(&self) -> bool {
-        true
-    }
-
     fn steepest(&self, _zone: &Zone) -> f64 {
         f64::INFINITY
     }

@@ -402,10 +402,6 @@ impl AnyField for Fill {
         [value, dx, dy, dz].into_iter().for_each(|list| repeat(list, count));
     }
 
-    fn is_blend(&self) -> bool {
-        true
-    }
-
     fn empty_balls(&self) -> Option<&dyn EmptyBalls> {
         Some(self)
     }

@@ -1,9 +1,9 @@
-//! A program taken apart by the signs of what blends add.
+//! A program taken apart by the signs of what is searched for.
 //!
 //! ```text
-//!     rest       the program without fillets: most rays meet what it says
+//!     rest       the program where none of it is: most rays meet what it says
 //!     added      fillets that are material: where one is met before the rest
-//!     cut        fillets and chamfers of complements: where one is at what a ray meets of the rest
+//!     cut        fillets, chamfers and cavities: where one is at what a ray meets of the rest
 //! ```
 //!
 //! With `added` fillets outside along a ray, up to a point, the solid is as the rest there, or less
@@ -28,9 +28,9 @@ pub(crate) struct Fillets {
 struct Counts([bool; 2]);
 
 impl Program {
-    /// The program without its fillets, within `bounds`, if it has some that can be told apart.
+    /// The program without what is searched for, within `bounds`, if some of it can be told apart.
     pub(crate) fn fillets(&self, bounds: &Bounds) -> Option<Fillets> {
-        let tops = self.blends();
+        let tops = self.searched();
         if tops.is_empty() {
             return None;
         }
@@ -59,20 +59,23 @@ impl Program {
         Some(found)
     }
 
-    /// The nodes that are what a blend adds, and of no other such node.
-    fn blends(&self) -> Vec<usize> {
-        let mut are_blends = Vec::with_capacity(self.nodes.len());
+    /// The nodes of leaves that are searched for, and of no other such node.
+    fn searched(&self) -> Vec<usize> {
+        let mut are_searched = Vec::with_capacity(self.nodes.len());
         let mut tops = Vec::new();
         for (at, node) in self.nodes.iter().enumerate() {
-            let is_blend = match node.kind {
-                Kind::Leaf(leaf) => self.instance(leaf).field.is_blend(),
+            let is_searched = match node.kind {
+                Kind::Leaf(leaf) => {
+                    let field = &self.instance(leaf).field;
+                    field.cost() > 1 && !field.is_steady()
+                }
                 Kind::Join { op: Op::And, rule: Rule::MinMax, .. } => {
-                    self.list(node).iter().all(|edge| !edge.negated() && are_blends[edge.node()])
+                    self.list(node).iter().all(|edge| !edge.negated() && are_searched[edge.node()])
                 }
                 _ => false,
             };
-            are_blends.push(is_blend);
-            if is_blend {
+            are_searched.push(is_searched);
+            if is_searched {
                 tops.retain(|top| self.list(node).iter().all(|edge| edge.node() != *top));
                 tops.push(at);
             }

@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn balls_are_told_of_maps_of_lengths_alone() {
         let plate = Solid::cuboid([2.0, 2.0, 0.4]);
-        let joint = plate.union_with(&Solid::sphere(0.5), Blend::Fillet { radius: 0.2 });
+        let joint = plate.union_with(Solid::sphere(0.5), Blend::Fillet { radius: 0.2 });
         let added = |solid: &Solid| {
             let bounds = Bounds::from_center(DVec3::ZERO, DVec3::splat(4.0));
             solid.surface_program().expect("the solid is valid").fillets(&bounds).map_or(0, |found| found.added.len())
@@ -142,6 +142,6 @@ mod tests {
         assert_eq!(added(&joint.scale_axes([1.0, 1.0, 2.0])), 0);
         assert_eq!(added(&joint.twist(deg(30.0))), 0);
         // A chamfer's face ends where its ball is, and is no fillet.
-        assert_eq!(added(&plate.union_with(&Solid::sphere(0.5), Blend::Chamfer { leg: 0.2 })), 0);
+        assert_eq!(added(&plate.union_with(Solid::sphere(0.5), Blend::Chamfer { leg: 0.2 })), 0);
     }
 }

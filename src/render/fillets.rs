@@ -11,14 +11,18 @@ use glam::DVec3;
 
 use super::cells::{Cell, Cells};
 use super::gbuffer::Surface;
+use super::job::Ray;
 use super::march::Marcher;
 use super::slopes::Known;
 use super::tile::{TIE, Tracer, nearer};
 use crate::Bounds;
-use crate::eval::{Fillets, Region};
+use crate::eval::{Fillets, Program, Region};
 
 /// What rays meet is where it is told to be to this part of the solid's size.
 const EXACT: f64 = 1e-4;
+
+/// Sides of the box are halved so often to see that there is nothing.
+const HALVINGS: u32 = 8;
 
 /// A tree in parts.
 pub(super) struct Apart {
@@ -33,7 +37,7 @@ impl Apart {
     /// `None` where the rest goes on beyond the bounds, or is nothing.
     pub(super) fn new(fillets: Fillets, bounds: Bounds, margin: f64) -> Option<Apart> {
         let Fillets { rest: Region::Surface(rest), added, are_operands, cut } = fillets else { return None };
-        if !bounds.contains_bounds(&rest.reach()) {
+        if !bounds.contains_bounds(&rest.reach()) && !is_outside_of_sides(&rest, &bounds) {
             return None;
         }
         let rest = Cells::within(&rest, bounds, margin, [true; 3]);
@@ -47,7 +51,40 @@ impl Apart {
     }
 }
 
+/// Whether there is nothing at the sides of a box: what is in it does not go on beyond.
+fn is_outside_of_sides(program: &Program, bounds: &Bounds) -> bool {
+    let side = |axis: usize, end: f64| {
+        let mut side = *bounds;
+        (side.min[axis], side.max[axis]) = (end, end);
+        side
+    };
+    let sides = (0..3).flat_map(|axis| [side(axis, bounds.min[axis]), side(axis, bounds.max[axis])]);
+    sides.into_iter().all(|side| is_outside(program, &side, HALVINGS))
+}
+
+/// Whether all of a box is outside, halved so often at most.
+fn is_outside(program: &Program, bounds: &Bounds, halvings: u32) -> bool {
+    match program.narrow(bounds) {
+        Region::Outside => true,
+        Region::Surface(program) if halvings > 0 => {
+            let size = bounds.size();
+            let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
+            let (mut low, mut high) = (*bounds, *bounds);
+            (low.max[axis], high.min[axis]) = (bounds.center()[axis], bounds.center()[axis]);
+            is_outside(&program, &low, halvings - 1) && is_outside(&program, &high, halvings - 1)
+        }
+        _ => false,
+    }
+}
+
 impl Tracer {
+    /// Whether a ray starts outside of what is a tree's rest: within, it meets that from the wrong
+    /// side, as from a cavity.
+    pub(super) fn starts_outside(&self, apart: &Apart, ray: u32) -> bool {
+        let Ray { origin, base, .. } = self.rays[ray as usize];
+        base > 0.0 || !apart.rest.contains(origin)
+    }
+
     /// Takes rays that have met what there is of the rest on to fillets. What they meet goes to
     /// `surfaces`, and the rays to the hits; gives those of which nothing is told.
     pub(super) fn fillets(&mut self, cells: &Cells, apart: &Apart, rays: &[u32], surfaces: &mut [Surface]) -> Vec<u32> {
@@ -100,13 +137,12 @@ impl Marcher {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::job::Ray;
     use crate::{Blend, Solid};
 
     #[test]
     fn hits_just_beyond_the_box_of_what_is_cut_off_are_asked_about() {
         let plate = Solid::cuboid([2.0, 2.0, 0.4]);
-        let solid = plate.difference_with(&Solid::cylinder(0.5, 2.0), Blend::Fillet { radius: 0.1 });
+        let solid = plate.difference_with(Solid::cylinder(0.5, 2.0), Blend::Fillet { radius: 0.1 });
         let program = solid.surface_program().expect("the solid is valid");
         let cells = Cells::new(&program, &solid.bounds().expect("the solid is valid"));
         let apart = cells.apart().expect("it has a fillet");

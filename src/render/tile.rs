@@ -140,11 +140,14 @@ impl Tracer {
                 }
             }
         }
-        match cells.apart().filter(|_| !packet.inside) {
+        let rays = alive.numbers(tile.width);
+        // Those that meet in a point start there.
+        let starts = &rays[..if packet.eye.is_some() { rays.len().min(1) } else { rays.len() }];
+        let apart = cells.apart().filter(|_| !packet.inside);
+        match apart.filter(|apart| starts.iter().all(|ray| self.starts_outside(apart, *ray))) {
             None => self.walk(cells, view, tile, packet, alive, surfaces),
             Some(apart) => {
                 self.walk(&apart.rest, view, tile, packet, alive, surfaces);
-                let rays = alive.numbers(tile.width);
                 let open = self.fillets(cells, apart, &rays, surfaces);
                 self.note(tile, None);
                 let mut again = Pixels::NONE;
@@ -238,10 +241,11 @@ impl Tracer {
             self.rays.push(ray);
         }
         let eye = rays.first().map(|ray| ray.0).filter(|eye| rays.len() > 1 && rays.iter().all(|ray| ray.0 == *eye));
-        let Some(apart) = cells.apart().filter(|_| !inside) else {
+        let all = octants.concat();
+        let apart = cells.apart().filter(|_| !inside);
+        let Some(apart) = apart.filter(|apart| all.iter().all(|ray| self.starts_outside(apart, *ray))) else {
             return self.walk_list(cells, octants, eye, surfaces);
         };
-        let all = octants.concat();
         let mut again = octants.clone();
         self.walk_list(&apart.rest, octants, eye, surfaces);
         let open = self.fillets(cells, apart, &all, surfaces);

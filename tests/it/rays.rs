@@ -330,6 +330,7 @@ fn pictures_of_fillets_see_what_single_rays_hit() {
         ("an edge", plate.intersection_with(&post, fillet(0.1))),
         ("a chamfered edge", plate.intersection_with(&post, Blend::Chamfer { leg: 0.1 })),
         ("bored through the fillet", &joint - Solid::cylinder(0.2, 3.0).translate([0.6, 0.1, 0.0])),
+        ("walls", (plate.twist(deg(40.0)).shell(0.06) | post.shell(0.1)) - plate.translate([0.0, -1.0, 0.0])),
         ("large and far", joint.scale(30.0).rotate_x(deg(40.0)).translate([200.0, 0.0, 0.0])),
     ];
     for (name, solid) in solids {

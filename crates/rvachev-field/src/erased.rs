@@ -229,10 +229,6 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>);
     /// Value and the three derivatives.
     fn gradients(&self, chunk: Chunk<'_, f32, 4>);
-    /// Whether it is what a blend adds between operands, such as a fillet.
-    fn is_blend(&self) -> bool {
-        false
-    }
     /// What tells balls in which no value is above 0, where that is more than values tell.
     fn empty_balls(&self) -> Option<&dyn EmptyBalls> {
         None

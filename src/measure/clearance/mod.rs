@@ -117,7 +117,7 @@ impl Solid {
     /// where surfaces touch all over, and where solids overlap. It takes seconds where fine round
     /// meshes all but fall together. Triangles of a mesh that lie in one plane are taken together,
     /// if nearly all do. The volume of an overlap is found as by [`measure`](Solid::measure); of one
-    /// that is thin all over, as of threads that are too thick, it may hardly be known.
+    /// that is thin all over, as of threads that are too thick, to a tenth or so, in some seconds.
     ///
     /// # Errors
     /// What is wrong with a solid, that it has no finite box, that it is so thin that nothing of

@@ -1,8 +1,9 @@
 //! The leaf over a zone.
 //!
 //! Where the surface is out of reach, so is a change of the sign, if the patches are all of it
-//! there: the sign field need not be asked at all. The search is left as it is: started at the lowest boxes that hold what can be nearest
-//! it takes some hundredths less, which is what finding these boxes takes.
+//! there: the sign field need not be asked at all. The search is left as it is: started at the
+//! lowest boxes that hold what can be nearest it takes some hundredths less, which is what finding
+//! these boxes takes.
 
 use super::SurfaceDistance;
 use crate::{AnyField, Zone};

@@ -82,7 +82,8 @@ impl Field for Nearest {
             sign = sign * crossing;
             i += 1;
         }
-        sign.select(nearest, -nearest)
+        // On an edge, where crossings are counted with the points above, its own slope is inwards.
+        (-nearest).select(nearest, sign.select(nearest, -nearest))
     }
 
     fn bounds(&self) -> Bounds {
