@@ -23,6 +23,7 @@ mod held;
 mod job;
 mod layers;
 mod lines;
+mod list;
 mod march;
 mod materials;
 mod occlusion;

@@ -32,7 +32,7 @@ pub(super) struct Tracer {
     pub(super) rays: Vec<Ray>,
     pub(super) spans: Vec<Span>,
     /// Of those, what is nearer than what they have met.
-    nearer: Vec<Span>,
+    pub(super) nearer: Vec<Span>,
 }
 
 /// Divides what of the tree every tile would begin with, on all threads: none waits for another
@@ -68,12 +68,12 @@ pub(super) fn divide_top(cells: &Cells, view: &View<'_>, window: &Window) {
 
 /// What the rays of a packet have in common.
 #[derive(Clone, Copy)]
-struct Packet {
+pub(super) struct Packet {
     /// The least and the greatest of their directions' components.
     low: DVec3,
     high: DVec3,
     /// Whether any of them starts inside the solid.
-    inside: bool,
+    pub(super) inside: bool,
     /// Where all of them come from, if that is one point.
     eye: Option<DVec3>,
 }
@@ -225,89 +225,6 @@ impl Tracer {
             }
         }
     }
-
-    /// What a list of rays meets, each an origin and a unit direction.
-    pub(super) fn list(&mut self, cells: &Cells, rays: &[(DVec3, DVec3)], surfaces: &mut [Surface]) {
-        self.rays.clear();
-        let mut inside = false;
-        let mut octants: [Vec<u32>; 8] = Default::default();
-        for (number, &(origin, direction)) in (0..).zip(rays) {
-            let mut ray = Ray::NONE;
-            if enters(&mut ray, cells, (origin, direction), None, None) {
-                let octant = (0..3).map(|axis| usize::from(direction[axis] < 0.0) << axis).sum::<usize>();
-                octants[octant].push(number);
-                inside |= ray.inside;
-            }
-            self.rays.push(ray);
-        }
-        let eye = rays.first().map(|ray| ray.0).filter(|eye| rays.len() > 1 && rays.iter().all(|ray| ray.0 == *eye));
-        let all = octants.concat();
-        let apart = cells.apart().filter(|_| !inside);
-        let Some(apart) = apart.filter(|apart| all.iter().all(|ray| self.starts_outside(apart, *ray))) else {
-            return self.walk_list(cells, octants, eye, surfaces);
-        };
-        let mut again = octants.clone();
-        self.walk_list(&apart.rest, octants, eye, surfaces);
-        let open = self.fillets(cells, apart, &all, surfaces);
-        open.iter().for_each(|ray| surfaces[*ray as usize] = Surface::NONE);
-        again.iter_mut().for_each(|rays| rays.retain(|ray| open.binary_search(ray).is_ok()));
-        self.walk_list(cells, again, eye, surfaces);
-    }
-
-    /// Takes rays of a list, by the octants of their directions, through the tree.
-    fn walk_list(&mut self, cells: &Cells, octants: [Vec<u32>; 8], eye: Option<DVec3>, surfaces: &mut [Surface]) {
-        let Part::Cell(root) = cells.root() else { return };
-        let tie = TIE * cells.bounds().longest_side();
-        let mut done = vec![false; surfaces.len()];
-        for (octant, list) in octants.into_iter().enumerate() {
-            // Cells with the rays that may pass them: the list's tail from `first`.
-            let mut lists = list;
-            let mut pending: Vec<(&Cell, usize, usize)> = vec![(root, 0, lists.len())];
-            while let Some((cell, first, end)) = pending.pop() {
-                lists.truncate(end);
-                self.spans.clear();
-                for &ray in &lists[first..end] {
-                    if done[ray as usize] {
-                        continue;
-                    }
-                    if let Some((near, far)) = span(&cell.bounds, &self.rays[ray as usize]) {
-                        self.spans.push(Span { ray, near, far });
-                    }
-                }
-                if self.spans.is_empty() {
-                    continue;
-                }
-                let mut packet = Packet::new(eye);
-                self.spans.iter().for_each(|span| packet.add(&self.rays[span.ray as usize]));
-                let united = packet.united(cell);
-                let is_whole = united.is_some_and(are_told);
-                let known = if is_whole { Known::ANY } else { packet.slopes(searched(united, cell)) };
-                if !packet.inside && united.is_none() && known.slopes.falls {
-                    continue;
-                }
-                if !is_whole && divides(cell, self.spans.len(), &known) {
-                    let first = lists.len();
-                    lists.extend(self.spans.iter().map(|span| span.ray));
-                    let is_above = |axis: usize, _: f64| octant >> axis & 1 == 0;
-                    cell.halves().far_first(&is_above, &mut |cell| pending.push((cell, first, lists.len())));
-                    continue;
-                }
-                self.marcher.hits.clear();
-                for part in united.unwrap_or(std::slice::from_ref(cell)) {
-                    let rays = self.spans.iter().map(|span| span.ray);
-                    self.nearer.clear();
-                    self.nearer.extend(rays.filter_map(|ray| nearer(part, ray, &self.rays, surfaces, tie)));
-                    if !self.nearer.is_empty() {
-                        let known = if united.is_some() { packet.slopes(part) } else { known.clone() };
-                        self.marcher.march(cells, part, &known, &self.rays, &self.nearer, surfaces);
-                    }
-                }
-                for &ray in &self.marcher.hits {
-                    done[ray as usize] = true;
-                }
-            }
-        }
-    }
 }
 
 /// A picture's rays.
@@ -364,24 +281,24 @@ impl<'a> View<'a> {
 }
 
 impl Packet {
-    fn new(eye: Option<DVec3>) -> Packet {
+    pub(super) fn new(eye: Option<DVec3>) -> Packet {
         Packet { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, inside: false, eye }
     }
 
-    fn add(&mut self, ray: &Ray) {
+    pub(super) fn add(&mut self, ray: &Ray) {
         self.low = self.low.min(ray.direction);
         self.high = self.high.max(ray.direction);
         self.inside |= ray.inside;
     }
 
     /// What a cell unites that the rays look for one by one, from outside.
-    fn united<'a>(&self, cell: &'a Cell) -> Option<&'a [Cell]> {
+    pub(super) fn united<'a>(&self, cell: &'a Cell) -> Option<&'a [Cell]> {
         if self.inside || cell.bend.is_some() || cell.share > COARSE { None } else { cell.united() }
     }
 
     /// The slopes of the value that the rays may find in a cell; all, of a cell whose slopes are
     /// not worth knowing.
-    fn slopes(&self, cell: &Cell) -> Known {
+    pub(super) fn slopes(&self, cell: &Cell) -> Known {
         if let Some(steepest) = cell.rolled {
             return Known::steep(steepest);
         }
@@ -396,7 +313,7 @@ impl Packet {
 
 impl Ray {
     /// Of a pixel that sees nothing.
-    const NONE: Ray =
+    pub(super) const NONE: Ray =
         Ray { origin: DVec3::ZERO, direction: DVec3::ZERO, inverse: DVec3::ZERO, base: 0.0, inside: false };
 }
 
@@ -424,7 +341,7 @@ fn inverse(direction: DVec3) -> DVec3 {
 /// Makes a ray ready; whether it meets the box of all cells. `known` is the inverse of its
 /// direction, if others have the same.
 #[inline(always)]
-fn enters(
+pub(super) fn enters(
     ray: &mut Ray,
     cells: &Cells,
     (origin, direction): (DVec3, DVec3),
@@ -450,7 +367,7 @@ fn enters(
 /// The part of a ray in a box. Two boxes that share a face share the distance to its plane, to
 /// the bit.
 #[inline(always)]
-fn span(bounds: &Bounds, ray: &Ray) -> Option<(f64, f64)> {
+pub(super) fn span(bounds: &Bounds, ray: &Ray) -> Option<(f64, f64)> {
     let (mut near, mut far) = (0.0f64, f64::INFINITY);
     for axis in 0..3 {
         let (o, inverse) = (ray.origin[axis], ray.inverse[axis]);
@@ -476,13 +393,13 @@ pub(super) fn nearer(cell: &Cell, ray: u32, rays: &[Ray], surfaces: &[Surface], 
 const STEEPEST: f64 = 1e200;
 
 /// What of a cell takes rays longest: where it is united, what does not bend one way, the last.
-fn searched<'a>(united: Option<&'a [Cell]>, cell: &'a Cell) -> &'a Cell {
+pub(super) fn searched<'a>(united: Option<&'a [Cell]>, cell: &'a Cell) -> &'a Cell {
     united.and_then(<[Cell]>::last).unwrap_or(cell)
 }
 
 /// Whether all parts of a cell bend one way along rays, or tell balls in which nothing is: to
 /// divide it would part them no further.
-fn are_told(parts: &[Cell]) -> bool {
+pub(super) fn are_told(parts: &[Cell]) -> bool {
     parts.iter().all(|part| part.bend.is_some() || part.rolled.is_some())
 }
 
@@ -519,7 +436,7 @@ const STEEP: f64 = 4.0;
 const BLIND: usize = 16;
 
 /// Whether `count` rays are better off in the halves of a cell, where slopes are `known`.
-fn divides(cell: &Cell, count: usize, known: &Known) -> bool {
+pub(super) fn divides(cell: &Cell, count: usize, known: &Known) -> bool {
     let Cell { share, leaves, cost, bend, .. } = *cell;
     let bent = bend.is_some();
     if bent && leaves == 1 {

@@ -455,4 +455,6 @@ impl AnyField for Polygon {
 }
 
 #[cfg(test)]
+mod slope_tests;
+#[cfg(test)]
 mod tests;
