@@ -60,7 +60,8 @@ impl Marcher {
         for (i, mut lane) in lanes.into_iter().enumerate().filter(|(i, _)| i % LEADERS != 0) {
             let beside = [spans[i / LEADERS], spans[i / LEADERS + 1]];
             let [from, to] = [0, 1].map(|end| self.known.partition_point(|ball| ball.span < beside[end] + end as u32));
-            if !is_led(&mut lane, &self.known[from..to], job.close) {
+            lead_by(&mut lane, &self.known[from..to]);
+            if !is_done(job, &lane) {
                 others.push(lane);
             }
         }
@@ -94,7 +95,7 @@ impl Marcher {
                     }
                 }
                 self.known.push(ball);
-                if lane.right - lane.left > job.close {
+                if !is_done(job, lane) {
                     lanes[kept] = *lane;
                     kept += 1;
                 }
@@ -112,9 +113,8 @@ impl Marcher {
     }
 }
 
-/// Leads a lane on, from both ends, by balls that others have met; whether nothing of it is left,
-/// or what is shorter than crossings are told apart.
-fn is_led(lane: &mut Lane, balls: &[Ball], close: f32) -> bool {
+/// Leads a lane on, from both ends, by balls that others have met.
+fn lead_by(lane: &mut Lane, balls: &[Ball]) {
     for ball in balls.iter().chain(balls) {
         let Some([enter, leave]) = ball.within(lane) else { continue };
         if enter <= lane.left {
@@ -124,7 +124,14 @@ fn is_led(lane: &mut Lane, balls: &[Ball], close: f32) -> bool {
         }
     }
     lane.at = lane.left;
-    lane.right - lane.left <= close
+}
+
+/// Whether nothing of a lane is left, or, where a ball is behind, less than crossings are told
+/// apart by. At the end of a cell a crossing counts, however near: the next one begins there.
+fn is_done(job: &Job<'_>, lane: &Lane) -> bool {
+    let Span { near, far, .. } = job.span(lane);
+    let (left, is_between) = (lane.right - lane.left, lane.right < (far - near) as f32);
+    left <= 0.0 || is_between && left <= job.close
 }
 
 impl Ball {
