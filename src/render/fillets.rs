@@ -26,10 +26,12 @@ const HALVINGS: u32 = 8;
 
 /// A tree in parts.
 pub(super) struct Apart {
-    /// Nothing if fillets are all there is.
+    /// Without what is searched for.
     pub(super) rest: Cells,
+    /// Fillets that are material, and whether each of them is inside wherever it is.
     added: Vec<Cell>,
     are_operands: bool,
+    /// What is cut off from the rest.
     cut: Vec<Cell>,
 }
 
