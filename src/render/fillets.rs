@@ -157,4 +157,16 @@ mod tests {
         let mut surfaces = [Surface { distance: 2.8 - 1e-6, ..Surface::NONE }; 2];
         assert_eq!(tracer.fillets(&cells, apart, &[0, 1], &mut surfaces), [0]);
     }
+
+    #[test]
+    fn walls_are_met_from_within_a_cavity() {
+        let solid = Solid::superellipsoid([0.5, 0.5, 1.0], 0.7, 0.7).shell(0.1);
+        let program = solid.surface_program().expect("the solid is valid");
+        let cells = Cells::new(&program, &solid.bounds().expect("the solid is valid"));
+        assert!(cells.apart().is_some());
+        let rays = [DVec3::X, -DVec3::Y].map(|way| (DVec3::ZERO, way));
+        let mut surfaces = [Surface::NONE; 2];
+        Tracer::default().list(&cells, &rays, &mut surfaces);
+        assert!(surfaces.iter().all(|seen| (seen.distance - 0.4).abs() < 1e-3), "{surfaces:?}");
+    }
 }
