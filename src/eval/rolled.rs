@@ -10,15 +10,14 @@
 //!           x
 //! ```
 
-use rvachev_field::kernel::{distinct, repeat};
-use rvachev_field::{Chunk, EmptyBalls, Zone};
-
 use glam::{DMat3, DVec3};
 
 use super::composite::unscaled;
 use super::few::Few;
 use super::fill::Fill;
 use super::program::Program;
+use rvachev_field::kernel::{distinct, repeat};
+use rvachev_field::{Chunk, EmptyBalls, Zone};
 
 /// A point that is nearer to where the ball's middle may be, in radii, is the middle itself of a
 /// ball that is as good.

@@ -17,7 +17,8 @@
 //! nearest crossing counts: nothing is divided further to part the leaves. What else is united with
 //! them, as the material of a fillet is, and takes long is looked for last, up to that crossing.
 //!
-//! Where fillets are among the solid's parts, most rays go through a tree without them (`fillets`).
+//! Where a solid has fillets or cavities that are searched for, most rays go through a tree without
+//! them (`fillets`).
 //!
 //! All programs of a solid agree on the sign of any point, and the parts of a ray in the boxes
 //! abut to the bit, as the crossings with a plane are computed alike on both sides of it: a
@@ -45,7 +46,7 @@ pub(super) struct Cells {
     program: Program,
     /// The tree in parts, for parallel rays along which a long leaf does not change.
     still: OnceLock<Option<Box<Still>>>,
-    /// The tree without fillets, and these.
+    /// The tree without what is searched for, and that.
     apart: OnceLock<Option<Box<Apart>>>,
 }
 
@@ -148,7 +149,7 @@ impl Cells {
         self.still.get()?.as_deref()
     }
 
-    /// The tree without the solid's fillets, and these, if it has some.
+    /// The tree without what is searched for, and that, if there is some.
     pub(super) fn apart(&self) -> Option<&Apart> {
         let apart = self.apart.get_or_init(|| {
             let fillets = self.program.fillets(&self.bounds)?;

@@ -1,17 +1,17 @@
-//! Rays by what a solid is without its fillets.
+//! Rays by what a solid is without what is searched for: fillets, chamfers, cavities.
 //!
 //! ```text
 //!           |    /|         Most rays meet the rest where no fillet is, and balls that roll there
 //!     ray   |   / |         tell so (`roll`): those are done without a value of the fillet. What meets
-//!     ---------+  |         a fillet before is searched for it, and the few rays of which neither is
-//!     ______|_/___|___      told are taken through the whole tree.
+//!     ---------+  |         a fillet before is searched for it. The few rays that meet the rest where
+//!     ______|_/___|___      something is cut off from it go through the whole tree.
 //! ```
 
 use glam::DVec3;
 
 use super::cells::{Cell, Cells};
 use super::gbuffer::Surface;
-use super::job::Ray;
+use super::job::{Job, Ray};
 use super::march::Marcher;
 use super::slopes::Known;
 use super::tile::{TIE, Tracer, nearer};
@@ -87,15 +87,23 @@ impl Tracer {
         base > 0.0 || !apart.rest.contains(origin)
     }
 
-    /// Takes rays that have met what there is of the rest on to fillets. What they meet goes to
-    /// `surfaces`, and the rays to the hits; gives those of which nothing is told.
-    pub(super) fn fillets(&mut self, cells: &Cells, apart: &Apart, rays: &[u32], surfaces: &mut [Surface]) -> Vec<u32> {
-        let tie = TIE * cells.bounds().longest_side();
+    /// Takes rays that have met what there is of the rest on to what is beside it, of which `near`
+    /// tells those that may pass a box. What they meet goes to `surfaces`, and the rays to the
+    /// hits; gives those of which nothing is told.
+    pub(super) fn besides(
+        &mut self,
+        cells: &Cells,
+        apart: &Apart,
+        near: impl Fn(&Bounds) -> Vec<u32>,
+        surfaces: &mut [Surface],
+    ) -> Vec<u32> {
+        let size = cells.bounds().longest_side();
         self.marcher.hits.clear();
         let mut open = Vec::new();
         for part in &apart.added {
+            let spans = near(&part.bounds).into_iter();
             self.spans.clear();
-            self.spans.extend(rays.iter().filter_map(|ray| nearer(part, *ray, &self.rays, surfaces, tie)));
+            self.spans.extend(spans.filter_map(|ray| nearer(part, ray, &self.rays, surfaces, TIE * size)));
             if self.spans.is_empty() {
                 continue;
             }
@@ -103,19 +111,17 @@ impl Tracer {
             if apart.are_operands {
                 self.marcher.march(cells, part, &known, &self.rays, &self.spans, surfaces);
             } else {
-                open.extend(self.marcher.unrolled(cells, part, &known, &self.rays, &self.spans));
+                open.extend(self.marcher.unrolled(&Job::new(cells, part, &known, &self.rays, &self.spans)));
             }
         }
         for part in &apart.cut {
-            let met = rays.iter().filter(|ray| surfaces[**ray as usize].is_hit());
-            let point = |ray: &u32| {
-                let own = &self.rays[*ray as usize];
-                own.origin + (surfaces[*ray as usize].distance - own.base) * own.direction
+            let room = part.bounds.inflate(EXACT * size);
+            let point = |ray: u32| {
+                let (own, seen) = (&self.rays[ray as usize], &surfaces[ray as usize]);
+                seen.is_hit().then(|| (ray, own.origin + (seen.distance - own.base) * own.direction))
             };
-            let room = part.bounds.inflate(EXACT * cells.bounds().longest_side());
-            let near: Vec<(u32, DVec3)> =
-                met.map(|ray| (*ray, point(ray))).filter(|(_, p)| room.contains(*p)).collect();
-            open.extend(self.marcher.filled(part, &near));
+            let met = near(&room).into_iter().filter_map(point).filter(|(_, p)| room.contains(*p));
+            open.extend(self.marcher.filled(part, &met.collect::<Vec<_>>()));
         }
         open.sort_unstable();
         open.dedup();
@@ -124,7 +130,7 @@ impl Tracer {
 }
 
 impl Marcher {
-    /// The points that a fillet may be at, by the numbers of their rays.
+    /// The points that what is cut off may be at, by the numbers of their rays.
     fn filled(&mut self, part: &Cell, points: &[(u32, DVec3)]) -> Vec<u32> {
         let (tape, count) = (part.tape(), points.len());
         let axis =
@@ -155,7 +161,7 @@ mod tests {
             tracer.rays.push(Ray { origin, direction, inverse: direction.recip(), base: 0.0, inside: false });
         }
         let mut surfaces = [Surface { distance: 2.8 - 1e-6, ..Surface::NONE }; 2];
-        assert_eq!(tracer.fillets(&cells, apart, &[0, 1], &mut surfaces), [0]);
+        assert_eq!(tracer.besides(&cells, apart, |_| vec![0, 1], &mut surfaces), [0]);
     }
 
     #[test]

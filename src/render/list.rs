@@ -32,7 +32,7 @@ impl Tracer {
         };
         let mut again = octants.clone();
         self.walk_list(&apart.rest, octants, eye, surfaces);
-        let open = self.fillets(cells, apart, &all, surfaces);
+        let open = self.besides(cells, apart, |_| all.clone(), surfaces);
         open.iter().for_each(|ray| surfaces[*ray as usize] = Surface::NONE);
         again.iter_mut().for_each(|rays| rays.retain(|ray| open.binary_search(ray).is_ok()));
         self.walk_list(cells, again, eye, surfaces);

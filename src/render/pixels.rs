@@ -31,10 +31,11 @@ impl Pixels {
     pub(super) const NONE: Pixels = Pixels([0; TILE as usize]);
     pub(super) const ALL: Pixels = Pixels([u64::MAX; TILE as usize]);
 
-    /// The numbers of the pixels of a tile that is so wide.
-    pub(super) fn numbers(&self, width: u32) -> Vec<u32> {
+    /// The numbers of those in a rectangle, in a tile that is so wide.
+    pub(super) fn numbers(&self, width: u32, Rectangle { top, bottom, columns }: Rectangle) -> Vec<u32> {
         let mut all = Vec::new();
-        for (row, mut bits) in (0..).zip(self.0) {
+        for (row, bits) in (top as u32..).zip(&self.0[top..bottom]) {
+            let mut bits = bits & columns;
             while bits != 0 {
                 all.push(row * width + bits.trailing_zeros());
                 bits &= bits - 1;

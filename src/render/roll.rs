@@ -10,10 +10,8 @@
 
 use glam::Vec3;
 
-use super::cells::{Cell, Cells};
-use super::job::{Job, Lane, Ray, Span};
+use super::job::{Job, Lane, Span};
 use super::march::{Marcher, points};
-use super::slopes::Known;
 
 /// So many balls lead a ray on, before what is left of it is searched in steps.
 const BALLS: usize = 24;
@@ -32,17 +30,9 @@ pub(super) struct Ball {
 
 impl Marcher {
     /// The rays that balls do not lead to the ends of their spans.
-    pub(super) fn unrolled(
-        &mut self,
-        cells: &Cells,
-        cell: &Cell,
-        known: &Known,
-        rays: &[Ray],
-        spans: &[Span],
-    ) -> Vec<u32> {
-        let job = Job::new(cells, cell, known, rays, spans);
-        self.load(&job);
-        self.roll(&job);
+    pub(super) fn unrolled(&mut self, job: &Job<'_>) -> Vec<u32> {
+        self.load(job);
+        self.roll(job);
         let lanes = std::mem::take(&mut self.search);
         lanes.iter().map(|lane| job.span(lane).ray).collect()
     }

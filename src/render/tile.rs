@@ -12,6 +12,7 @@ use glam::DVec3;
 use rvachev_num::jobs;
 
 use super::cells::{Cell, Cells, Part};
+use super::fillets::Apart;
 use super::gbuffer::{Surface, Window};
 use super::job::{Ray, Span};
 use super::march::Marcher;
@@ -140,15 +141,19 @@ impl Tracer {
                 }
             }
         }
-        let rays = alive.numbers(tile.width);
-        // Those that meet in a point start there.
-        let starts = &rays[..if packet.eye.is_some() { rays.len().min(1) } else { rays.len() }];
-        let apart = cells.apart().filter(|_| !packet.inside);
-        match apart.filter(|apart| starts.iter().all(|ray| self.starts_outside(apart, *ray))) {
+        // Rays that meet in a point start there.
+        let starts = if packet.eye.is_some() { 1 } else { usize::MAX };
+        let are_outside = |apart: &&Apart| {
+            alive.numbers(tile.width, seen).iter().take(starts).all(|ray| self.starts_outside(apart, *ray))
+        };
+        match cells.apart().filter(|_| !packet.inside).filter(are_outside) {
             None => self.walk(cells, view, tile, packet, alive, surfaces),
             Some(apart) => {
                 self.walk(&apart.rest, view, tile, packet, alive, surfaces);
-                let open = self.fillets(cells, apart, &rays, surfaces);
+                let near = |bounds: &Bounds| {
+                    view.rectangle(bounds, tile).map_or_else(Vec::new, |within| alive.numbers(tile.width, within))
+                };
+                let open = self.besides(cells, apart, near, surfaces);
                 self.note(tile, None);
                 let mut again = Pixels::NONE;
                 for ray in open {
