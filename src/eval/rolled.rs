@@ -19,10 +19,6 @@ use super::program::Program;
 use rvachev_field::kernel::{distinct, repeat};
 use rvachev_field::{Chunk, EmptyBalls, Zone};
 
-/// A point that is nearer to where the ball's middle may be, in radii, is the middle itself of a
-/// ball that is as good.
-const NEAR: f64 = 0.05;
-
 /// How far a map of lengths may be off one.
 const SIMILAR: f64 = 1e-9;
 
@@ -41,11 +37,14 @@ impl EmptyBalls for Fill {
         let rounding = ROUNDINGS * self.ball.field.roundoff((0..count).map(reach).fold(0.0, f64::max));
         let whole = self.radius + self.margin - rounding;
         for (i, (apart, slope)) in all.slopes(&self.ball, &unscaled(placement)).into_iter().enumerate() {
-            let is_near = apart <= NEAR * self.radius;
-            let away = if is_near { DVec3::ZERO } else { length * apart * slope.normalize_or_zero() };
-            // From well within where the middle may be it is as far as that to all that is filled.
-            let beyond = if apart > 0.0 { -apart } else { (-apart - 2.0 * self.margin).max(apart) };
-            radius[i] = (length * if is_near { whole + beyond } else { whole }) as f32;
+            let (more, away) = if apart > 0.0 {
+                (0.0, length * apart * slope.normalize_or_zero())
+            } else {
+                // Within where the middle may be the point is one, and as deep as it is, all that is
+                // filled is farther off.
+                ((-apart - 2.0 * self.margin).max(apart), DVec3::ZERO)
+            };
+            radius[i] = (length * (whole + more)) as f32;
             for ((to, at), by) in [&mut *x, &mut *y, &mut *z].into_iter().zip(point(i)).zip(away.to_array()) {
                 to[i] = (at - by) as f32;
             }

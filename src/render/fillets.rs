@@ -145,7 +145,7 @@ impl Marcher {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Blend, Solid};
+    use crate::{Blend, Solid, deg};
 
     #[test]
     fn hits_just_beyond_the_box_of_what_is_cut_off_are_asked_about() {
@@ -164,15 +164,45 @@ mod tests {
         assert_eq!(tracer.besides(&cells, apart, |_| vec![0, 1], &mut surfaces), [0]);
     }
 
-    #[test]
-    fn walls_are_met_from_within_a_cavity() {
-        let solid = Solid::superellipsoid([0.5, 0.5, 1.0], 0.7, 0.7).shell(0.1);
+    /// What a list of rays meets of a solid that has something apart.
+    fn seen(solid: &Solid, rays: &[(DVec3, DVec3)]) -> Vec<f64> {
         let program = solid.surface_program().expect("the solid is valid");
         let cells = Cells::new(&program, &solid.bounds().expect("the solid is valid"));
         assert!(cells.apart().is_some());
-        let rays = [DVec3::X, -DVec3::Y].map(|way| (DVec3::ZERO, way));
-        let mut surfaces = [Surface::NONE; 2];
-        Tracer::default().list(&cells, &rays, &mut surfaces);
-        assert!(surfaces.iter().all(|seen| (seen.distance - 0.4).abs() < 1e-3), "{surfaces:?}");
+        let mut surfaces = vec![Surface::NONE; rays.len()];
+        Tracer::default().list(&cells, rays, &mut surfaces);
+        surfaces.iter().map(|seen| seen.distance).collect()
+    }
+
+    #[test]
+    fn fillets_that_are_cut_away_are_not_met() {
+        let joint =
+            Solid::cuboid([2.0, 2.0, 0.4]).union_with(Solid::cylinder(0.5, 2.0), Blend::Fillet { radius: 0.15 });
+        let half = joint - Solid::cuboid([4.0, 4.0, 4.0]).translate([0.0, -2.0, 0.0]);
+        // Through the fillet before the cut, to the fillet in the cut.
+        let found = seen(&half, &[(DVec3::new(0.52, -3.0, 0.22), DVec3::Y)]);
+        assert!((found[0] - 3.0).abs() < 1e-3, "{found:?}");
+    }
+
+    #[test]
+    fn what_goes_on_beyond_the_box_is_not_apart() {
+        let joint =
+            Solid::cuboid([2.0, 2.0, 0.4]).union_with(Solid::cylinder(0.5, 2.0), Blend::Fillet { radius: 0.15 });
+        let twisted = Solid::cuboid([2.0, 2.0, 4.0]).twist(deg(20.0)).shell(0.1);
+        for solid in [joint, twisted] {
+            let program = solid.surface_program().expect("the solid is valid");
+            let whole = solid.bounds().expect("the solid is valid");
+            assert!(Cells::new(&program, &whole).apart().is_some());
+            // Rays that enter the lower half of the box may start within.
+            let lower = Bounds { max: whole.max.with_z(0.0), ..whole };
+            assert!(Cells::new(&program, &lower).apart().is_none());
+        }
+    }
+
+    #[test]
+    fn walls_are_met_from_within_a_cavity() {
+        let solid = Solid::superellipsoid([0.5, 0.5, 1.0], 0.7, 0.7).shell(0.1);
+        let found = seen(&solid, &[DVec3::X, -DVec3::Y].map(|way| (DVec3::ZERO, way)));
+        assert!(found.iter().all(|distance| (distance - 0.4).abs() < 1e-3), "{found:?}");
     }
 }
