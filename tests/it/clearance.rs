@@ -48,6 +48,7 @@ fn a_peg_in_a_hole_has_its_gap_all_round() {
     let plate = Solid::cuboid([30.0, 30.0, 5.0]) - Solid::cylinder(5.1, 10.0);
     let found = clearance(&Solid::cylinder(5.0, 20.0), &plate);
     right(&found, 0.1);
+    assert!(found.tolerance < 0.018, "{found:?}");
     assert!((found.points[0].truncate().length() - 5.0).abs() < 1e-6);
     let aside = clearance(&Solid::cylinder(5.0, 20.0).translate([0.05, 0.0, 0.0]), &plate);
     right(&aside, 0.05);
