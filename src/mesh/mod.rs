@@ -1,5 +1,6 @@
 //! From a solid to a triangle mesh, and what can be said about a mesh.
 
+mod bent;
 mod blocks;
 mod bulk;
 mod check;
@@ -40,6 +41,7 @@ pub use open_edges::OpenEdges;
 pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 pub use volume::{Volume, VolumeError, VolumeSettings};
 
+pub(crate) use bent::bent;
 pub(crate) use paint::{corner_colors, each_triangle};
 pub(crate) use shown::{Hidden, reached};
 pub(crate) use signs::BLOCK;

@@ -3,6 +3,8 @@
 //! ```text
 //!    cells as asked for --something may be lost?--> cells of a half --?--> of a quarter
 //!                               as long as there are few enough
+//!                                       |
+//!                                       '--rounds, bevels, rims that are cut off--> edges bent
 //! ```
 //!
 //! All cells are halved, not those alone that something is lost in: which these are is a question
@@ -13,12 +15,17 @@ use std::sync::{Arc, PoisonError};
 use super::scene::Scene;
 use super::settings::{RenderError, check_cells};
 use crate::geom::Findings;
-use crate::mesh::{BLOCK, MeshingError, Subject};
+use crate::mesh::{BLOCK, MeshingError, Subject, bent};
 use crate::raster::ClosedMesh;
 use crate::{CellSize, Mesh, MeshSettings, Run};
 
 /// Where something may be thinner than a cell, cells of a half and of a quarter are tried.
 const HALVINGS: u32 = 2;
+
+/// Edges are bent that are off the surface by more than this part of a cell, and their halves: in 64
+/// cells it is half a pixel of a large picture.
+const OFF: f64 = 0.07;
+const BENT: u32 = 2;
 
 /// What drafts show of a scene.
 #[derive(Default)]
@@ -71,9 +78,9 @@ impl Scene {
             let cell = CellSize::LongestSide(cells << halvings);
             subject.mesh(&MeshSettings { cell, owners: true, ..MeshSettings::default() }, run)
         };
-        let stages = run.stages([1.0, 4.0, 16.0]);
+        let stages = run.stages([1.0, 4.0, 16.0, 4.0]);
         let mut found = mesh(0, &stages[0])?;
-        for (halvings, run) in (1..=HALVINGS).zip(&stages[1..]) {
+        for (halvings, run) in (1..=HALVINGS).zip(&stages[1..3]) {
             // A block has eight halves at most: what they take is known beforehand.
             let Findings { possibly_lost, blocks, .. } = *found.findings();
             if possibly_lost == 0 || 8 * blocks > most_blocks(cells) {
@@ -85,6 +92,8 @@ impl Scene {
                 finer => found = finer?,
             }
         }
+        let off = OFF * found.findings().cell;
+        let found = bent(found, self.program(), (off, BENT), &stages[3])?;
         let is_closed = ClosedMesh::new(&found).is_ok();
         let shown = Arc::new(DraftMesh { mesh: Arc::new(found), is_closed });
         *kept() = Some((cells, shown.clone()));
