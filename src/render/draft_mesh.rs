@@ -78,7 +78,7 @@ impl Scene {
             let cell = CellSize::LongestSide(cells << halvings);
             subject.mesh(&MeshSettings { cell, owners: true, ..MeshSettings::default() }, run)
         };
-        let stages = run.stages([1.0, 4.0, 16.0, 4.0]);
+        let stages = run.stages([2.0, 1.0, 2.0, 1.0]);
         let mut found = mesh(0, &stages[0])?;
         for (halvings, run) in (1..=HALVINGS).zip(&stages[1..3]) {
             // A block has eight halves at most: what they take is known beforehand.
