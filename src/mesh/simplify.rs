@@ -20,8 +20,11 @@ mod near;
 mod quadric;
 mod start;
 
-use self::collapse::Collapse;
+use glam::DVec3;
 use rvachev_num::order;
+
+use self::collapse::Collapse;
+use self::near::distance_squared;
 
 use super::check::intersecting;
 use super::deviation::{self, Probe};
@@ -73,11 +76,14 @@ pub(super) fn simplified(
         }
         for triangle in wrong {
             run.check()?;
-            let around = Bounds::from_points(fewer.corners(triangle)).inflate(tolerance);
+            // Nothing but what is near the triangle, and farther about it from time to time.
+            let (corners, reach) = (fewer.corners(triangle), tolerance * f64::from(1 << attempt));
+            let around = Bounds::from_points(corners).inflate(reach);
             let place = |n: &u32| mesh.positions()[*n as usize].as_dvec3();
             let first = along_x.partition_point(|n| place(n).x < around.min.x);
             let near = along_x[first..].iter().take_while(|n| place(n).x <= around.max.x);
-            near.filter(|n| around.contains(place(n))).for_each(|n| parts[*n as usize] *= LESS);
+            let is_near = |p: DVec3| around.contains(p) && distance_squared(p, corners) <= reach * reach;
+            near.filter(|n| is_near(place(n))).for_each(|n| parts[*n as usize] *= LESS);
         }
     }
     Ok(told(mesh, (probes, lost), tolerance))
