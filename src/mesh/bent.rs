@@ -64,6 +64,12 @@ struct Face {
     owner: u32,
 }
 
+impl Face {
+    fn new(corners: [(u32, Vec3); 3], owner: u32) -> Face {
+        Face { corners: corners.map(|(vertex, _)| vertex), normals: corners.map(|(_, normal)| normal), owner }
+    }
+}
+
 /// The numbers of its ends, the lower one first.
 type Edge = [u32; 2];
 
@@ -226,13 +232,9 @@ impl Bent {
             [Some(x), ..] => vec![[a, x, c], [x, b, c]],
             [None, ..] => return,
         };
-        let face = |corners: [(u32, Vec3); 3]| Face {
-            corners: corners.map(|(vertex, _)| vertex),
-            normals: corners.map(|(_, normal)| normal),
-            owner,
-        };
-        self.faces[number] = face(parts[0]);
-        self.faces.extend(parts[1..].iter().copied().map(face));
+        let faces: Vec<Face> = parts.into_iter().map(|corners| Face::new(corners, owner)).collect();
+        self.faces[number] = faces[0];
+        self.faces.extend_from_slice(&faces[1..]);
     }
 
     fn into_mesh(self, of: &Mesh) -> Option<Mesh> {
