@@ -20,11 +20,8 @@ mod near;
 mod quadric;
 mod start;
 
-use glam::DVec3;
-use rvachev_num::order;
-
 use self::collapse::Collapse;
-use self::near::distance_squared;
+use rvachev_num::order;
 
 use super::check::intersecting;
 use super::deviation::{self, Probe};
@@ -76,14 +73,11 @@ pub(super) fn simplified(
         }
         for triangle in wrong {
             run.check()?;
-            // Nothing but what is near the triangle, and farther about it from time to time.
-            let (corners, reach) = (fewer.corners(triangle), tolerance * f64::from(1 << attempt));
-            let around = Bounds::from_points(corners).inflate(reach);
+            let around = Bounds::from_points(fewer.corners(triangle)).inflate(tolerance);
             let place = |n: &u32| mesh.positions()[*n as usize].as_dvec3();
             let first = along_x.partition_point(|n| place(n).x < around.min.x);
             let near = along_x[first..].iter().take_while(|n| place(n).x <= around.max.x);
-            let is_near = |p: DVec3| around.contains(p) && distance_squared(p, corners) <= reach * reach;
-            near.filter(|n| is_near(place(n))).for_each(|n| parts[*n as usize] *= LESS);
+            near.filter(|n| around.contains(place(n))).for_each(|n| parts[*n as usize] *= LESS);
         }
     }
     Ok(told(mesh, (probes, lost), tolerance))

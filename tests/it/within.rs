@@ -8,7 +8,6 @@ use rvachev::{
 };
 
 use super::support::Random;
-use super::workpieces;
 
 fn within(solid: &Solid, tolerance: f64) -> Mesh {
     let cell = CellSize::Tolerance(tolerance);
@@ -219,18 +218,6 @@ fn what_has_no_end_is_cut_by_the_bounds() {
     assert!((column - 1.0).abs() < 1e-3, "{column}");
     let corner = Solid::half_space(DVec3::X, 0.0) & Solid::half_space(DVec3::Y, 0.0);
     assert!((volume(corner) - 2.0).abs() < 1e-3);
-}
-
-/// Necks of chessmen end in knife edges: cells are not halved along them once all is near enough,
-/// and triangles that are wrong beside them keep what is near alone.
-#[test]
-fn knife_edges_leave_few_triangles() {
-    let pieces = workpieces::plain();
-    let (_, king) = pieces.iter().find(|(piece, _)| *piece == "king").unwrap();
-    let mesh = within(king, 0.3);
-    let (count, off) = (mesh.triangles().len(), mesh.deviation().unwrap());
-    assert!(count < 4900 && off < 0.3, "{count} triangles, off by {off}");
-    assert!(mesh.check().is_sound());
 }
 
 /// No point of a mesh that ends before an acute rim is far from the surface; the rim is from it.

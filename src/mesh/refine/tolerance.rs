@@ -19,7 +19,6 @@ use crate::mesh::blocks::Blocks;
 use crate::mesh::deviation::{Probe, largest, probes};
 use crate::mesh::error::MeshingError;
 use crate::mesh::lattice::{CellSize, Lattice};
-use crate::mesh::simplify::SHARE;
 
 /// Where this part of the surface is off, all cells are made smaller, so that this part should be
 /// off then.
@@ -31,10 +30,6 @@ const REST: f64 = 0.03;
 /// it is much smaller.
 const MOST: f64 = 0.8;
 const LEAST: f64 = 0.4;
-
-/// Where cells were halved, it is near enough if it is off by this part of all that it may be off in
-/// the end, and no rim is cut off.
-const NEAR: f64 = 0.75;
 
 /// How often it is compared.
 const ROUNDS: usize = 9;
@@ -54,7 +49,7 @@ const PART: f64 = 0.25;
 const WORSE: f64 = 1.5;
 
 /// How far the work is after a round, of what there was to do.
-const ROUND: f64 = 0.5;
+const ROUND: f64 = 0.4;
 
 /// A mesh near the surface, how near, and what its largest cells are.
 pub(in crate::mesh) struct Within {
@@ -106,9 +101,7 @@ pub(in crate::mesh) fn within(
             alone = Some((level.lattice, far, mesh.triangles().len()));
             enough = (ENOUGH_IN_PLACES + FOR_EACH * mesh.triangles().len()).min(ENOUGH);
         }
-        // What is near enough for the mesh to be simplified is not halved again.
-        let is_near = levels.len() > 1 && lost.is_empty() && SHARE * far <= NEAR * tolerance;
-        let is_done = is_near || round >= ROUNDS || mesh.triangles().len() > enough;
+        let is_done = round >= ROUNDS || mesh.triangles().len() > enough;
         // Where larger and smaller cells meet, creases are cut off: that may be worse than what is
         // repaired.
         let is_worse = |(_, before, count): &(Lattice, f64, usize)| {
