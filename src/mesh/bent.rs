@@ -21,9 +21,6 @@ use crate::eval::Program;
 use crate::geom::Mesh;
 use crate::{Cancelled, Run};
 
-/// Values may be off by this part of the tolerance.
-const PRECISION: f64 = 0.02;
-
 /// So often the way to the surface is doubled or halved.
 const STEPS: usize = 8;
 
@@ -154,7 +151,7 @@ impl Bent {
         run: &Run,
     ) -> Result<Vec<(Edge, Vec3)>, Cancelled> {
         let [to_look, to_go] = run.stages([0.7, 0.3]);
-        let slopes = Slopes { program, precision: PRECISION * tolerance };
+        let slopes = Slopes::within(program, tolerance);
         let ways: Vec<Way> = self.faces.iter().flat_map(|face| self.ways(face, first)).flatten().collect();
         let beside: Vec<DVec3> = ways.iter().flat_map(|way| [way.at(tolerance), way.at(-tolerance)]).collect();
         let found = slopes.at(&beside, &to_look)?;

@@ -14,9 +14,6 @@ use super::slopes::{Slope, Slopes};
 use crate::geom::Mesh;
 use crate::{Cancelled, Run};
 
-/// Values may be off by this part of the tolerance.
-const PRECISION: f64 = 0.02;
-
 /// A point that is compared with the surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Probe {
@@ -37,7 +34,7 @@ pub(super) fn probes(
     tolerance: f64,
     run: &Run,
 ) -> Result<Vec<Probe>, Cancelled> {
-    let slopes = Slopes { program, precision: PRECISION * tolerance };
+    let slopes = Slopes::within(program, tolerance);
     let mut seen = vec![false; mesh.positions().len()];
     let (mut probes, mut points, mut reach) = (Vec::new(), Vec::new(), Vec::new());
     for (number, &triangle) in (0u32..).zip(mesh.triangles()) {

@@ -18,6 +18,9 @@ const FEW: usize = 256;
 /// Programs of so few leaves are not narrowed any further.
 const SHORT: usize = 2;
 
+/// What is compared with a tolerance is known to this part of it.
+const PART: f64 = 0.02;
+
 /// Values and gradients of `program`, to `precision` where single precision reaches it, else in
 /// double precision.
 pub(crate) struct Slopes<'a> {
@@ -79,6 +82,13 @@ fn hull(numbers: &[u32], points: &[DVec3]) -> Bounds {
         (min, max) = (min.min(p), max.max(p));
     }
     Bounds::new(min, max)
+}
+
+impl<'a> Slopes<'a> {
+    /// As precise as it takes to compare them with a tolerance.
+    pub(crate) fn within(program: &'a Program, tolerance: f64) -> Slopes<'a> {
+        Slopes { program, precision: PART * tolerance }
+    }
 }
 
 impl Slopes<'_> {

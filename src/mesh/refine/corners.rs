@@ -31,7 +31,7 @@ pub(super) fn corners(job: Job<'_>, tolerance: f64, run: &Run) -> Result<Vec<DVe
     if all.is_empty() {
         return Ok(all);
     }
-    let found = Slopes { program, precision: 0.02 * tolerance }.at(&all, run)?;
+    let found = Slopes::within(program, tolerance).at(&all, run)?;
     let near = all.into_iter().zip(found).filter(|(_, slope)| slope.value.abs() < 0.1 * tolerance);
     Ok(near.map(|(corner, _)| corner).collect())
 }

@@ -19,9 +19,6 @@ use crate::{Cancelled, Run};
 /// tell.
 const ACUTE: f64 = 0.0;
 
-/// Values may be off by this part of the tolerance.
-const PRECISION: f64 = 0.02;
-
 /// So often the way beyond an edge is doubled, and what it ends in halved.
 const DOUBLED: usize = 8;
 const HALVED: usize = 5;
@@ -115,7 +112,7 @@ pub(super) fn cut_off(
             }
         }
     }
-    let slopes = Slopes { program, precision: PRECISION * tolerance };
+    let slopes = Slopes::within(program, tolerance);
     let beside: Vec<DVec3> = rims.iter().flat_map(|rim| rim.beside).collect();
     let found = slopes.at(&beside, run)?;
     let ways = rims.iter().zip(found.chunks(2)).filter_map(|(rim, own)| rim.way([own[0].normal(), own[1].normal()]));
