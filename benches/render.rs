@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench render` prints milliseconds for the normal image at 512² and 1024²:
 //! orthographic along z over the model's cube, one ray a pixel, distance, normal and owner. Our
-//! first picture prepares the scene, the next ones reuse it; fidget's VM and JIT start each time
+//! first picture prepares the scene, the next one is of the same view; fidget's VM and JIT start each time
 //! from a shape that is made already. Then come shaded perspective pictures, plain (one ray a
 //! pixel, no shadows, no occlusion) and with all that is on by default. Every figure is the median
 //! of several rounds in which the contestants alternate. The ratio is that of the faster of
@@ -14,7 +14,7 @@
 //!
 //! Rows are single pictures, seen as by [`Camera::framing_orthographic`], of what was once slow to
 //! draw, and of every entry of the catalogue, beside fidget's VM on the same formula seen the same
-//! way, where there is one.
+//! way, where there is one. Of each there is one of another view of the same scene as well.
 //!
 //! Drafts are of what the examples show. The last rows are of thousands of balls cut out, with the
 //! memory that they take.
@@ -50,7 +50,7 @@ use fidget::vm::VmFunction;
 use fidget_raster::{pixel, voxel};
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 use rvachev::camera::{Projection, Window};
-use rvachev::{Camera, PlaneBounds, Profile, RFunction, RenderSettings, Run, Scene, Solid, layers::GBuffer};
+use rvachev::{Camera, PlaneBounds, Profile, RFunction, RenderSettings, Run, Scene, Solid, deg, layers::GBuffer};
 
 use lean::lean;
 use memory::{MEMORY, print_memory};
@@ -401,22 +401,31 @@ fn view(camera: &Camera) -> DAffine3 {
     DAffine3::from_mat3_translation(0.5 * height * axes, camera.target)
 }
 
+/// Another view each time, as of a turntable.
+fn turned(camera: &Camera, turns: &mut u32) -> Camera {
+    *turns += 1;
+    camera.orbit(deg(15.0 * f64::from(*turns)), deg(0.0))
+}
+
 fn print_rows(choice: &Choice, rows: Vec<rows::Row>) {
     println!("normal images of single solids, one thread, milliseconds; ratio of fidget's VM to our first\n");
-    println!("{:28} size    first     next   hits  fidget VM   ratio", "solid");
+    println!("{:28} size    first   turned     next   hits  fidget VM   ratio", "solid");
     let run = Run { threads: 1, ..Run::default() };
     for rows::Row { name, size, solid, has_peer } in rows {
         if !choice.names(&name) {
             continue;
         }
         let camera = Camera::framing_orthographic(&solid.bounds().expect("the solid is valid"));
-        let kept = scene(&solid, &run);
+        let [kept, turning] = [scene(&solid, &run), scene(&solid, &run)];
+        drop(picture(&turning, &camera, size, &run));
+        let mut turns = 0;
         let start = Instant::now();
         let seen = picture(&kept, &camera, size, &run);
         let is_slow = start.elapsed().as_secs_f64() > 0.5;
         let hits = seen.surfaces().iter().filter(|s| s.is_hit()).count();
         let mut all: Vec<Contestant<'_>> = vec![
             ("first", Box::new(|| drop(black_box(picture(&scene(&solid, &run), &camera, size, &run))))),
+            ("turned", Box::new(|| drop(black_box(picture(&turning, &turned(&camera, &mut turns), size, &run))))),
             ("next", Box::new(|| drop(black_box(picture(&kept, &camera, size, &run))))),
         ];
         if has_peer
@@ -427,8 +436,8 @@ fn print_rows(choice: &Choice, rows: Vec<rows::Row>) {
         }
         let times = race(if is_slow { 1 } else { choice.rounds() }, 1, &mut all);
         let share = hits as f64 / f64::from(size * size);
-        print!("{name:28} {size:4} {:8.1} {:8.1} {share:6.3}", times[0], times[1]);
-        match times.get(2) {
+        print!("{name:28} {size:4} {:8.1} {:8.1} {:8.2} {share:6.3}", times[0], times[1], times[2]);
+        match times.get(3) {
             Some(vm) => println!(" {vm:10.1} {:7.2}", vm / times[0]),
             None => println!("          –"),
         }

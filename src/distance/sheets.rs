@@ -43,11 +43,11 @@ const ONE: f64 = 0.5;
 /// A triangle and how far it is off.
 type Found = (Patch, f64);
 
-/// Adds to a quilt what is hidden in cells, of a solid whose values may be off by `grain`. Gives those
-/// that have some left.
+/// Adds to a quilt what is hidden in cells, as far as it is `near`: of what is beyond, patches are
+/// not known. Values may be off by `grain`. Gives the cells that have some left.
 pub(super) fn cover(
     quilt: &mut Quilt,
-    subject: &Subject<'_>,
+    (subject, near): (&Subject<'_>, &Bounds),
     hidden: &[Hidden],
     slopes: &Slopes<'_>,
     [tolerance, grain]: [f64; 2],
@@ -68,10 +68,12 @@ pub(super) fn cover(
         let crossings = Crossings { program: &program, rounding, precision: PRECISE * tolerance, grain };
         let is_sure = *is_sure || subject.has_inner(cell, &program);
         let lines = LINES.into();
-        let own = Cell { crossings, tolerance, bounds: *cell, is_sure: is_sure.into(), known: &known, lines, run };
+        let bounds = cell.intersection(near);
+        let own = Cell { crossings, tolerance, bounds, near, is_sure: is_sure.into(), known: &known, lines, run };
         let found = own.sheets();
         run.check()?;
-        let is_missed = own.is_sure.get() && found.is_empty();
+        // What is beyond may be all that is hidden.
+        let is_missed = own.is_sure.get() && found.is_empty() && near.contains_bounds(cell);
         Ok((found, is_missed.then_some(*cell)))
     };
     let found = jobs::try_in_order(hidden.len(), |n| of_cell(&hidden[n]))?;
@@ -90,6 +92,8 @@ struct Cell<'a> {
     crossings: Crossings<'a>,
     tolerance: f64,
     bounds: Bounds,
+    /// Where patches are known.
+    near: &'a Bounds,
     /// Whether there is something in it that is not known: what is known may be all that there is.
     is_sure: std::cell::Cell<bool>,
     known: &'a Patches,
@@ -150,8 +154,9 @@ impl Cell<'_> {
             }
             let size = self.bounds.size();
             let [u, v] = [(axis + 1) % 3, (axis + 2) % 3].map(|side| DVec3::AXES[side] * size[side]);
-            let (from, length) =
-                (self.bounds.min - BEYOND * size[axis] * DVec3::AXES[axis], (1.0 + 2.0 * BEYOND) * size[axis]);
+            let mut from = self.bounds.min;
+            from[axis] = (from[axis] - BEYOND * size[axis]).max(self.near.min[axis]);
+            let length = (self.bounds.max[axis] + BEYOND * size[axis]).min(self.near.max[axis]) - from[axis];
             self.look(&Square { from, sides: [u, v], axis, length }, 0, &mut found);
             if !found.is_empty() {
                 break;
@@ -339,7 +344,10 @@ mod tests {
         // The face is in the cell to within rounding, and no node is outside.
         let bounds = Bounds::new(DVec3::new(0.5, -0.5, 0.9), DVec3::new(0.6, -0.4, 1.0 - 1e-6));
         let is_sure = true.into();
-        let cell = Cell { crossings, tolerance: 1e-3, bounds, is_sure, known: &known, lines: LINES.into(), run: &run };
+        let near = &Bounds::ALL;
+        let known = &known;
+        let lines = LINES.into();
+        let cell = Cell { crossings, tolerance: 1e-3, bounds, near, is_sure, known, lines, run: &run };
         assert!(cell.sheets().is_empty());
         assert!(!cell.is_sure.get() && cell.lines.get() == LINES - 5, "{:?}", cell.lines);
     }
@@ -356,6 +364,7 @@ mod tests {
             crossings,
             tolerance: 1e-3,
             bounds,
+            near: &Bounds::ALL,
             is_sure: true.into(),
             known: &known,
             lines: LINES.into(),

@@ -153,7 +153,8 @@ impl DistanceSource for FromMeshes {
                     is_enough = is_near(&found);
                     // What is hidden is looked for once the rest is as it is to be.
                     if is_enough || is_last {
-                        let mut missed = cover(&mut found.1, &subject, &hidden, &slopes, [tolerance, grain], &to_sew)?;
+                        let mut missed =
+                            cover(&mut found.1, (&subject, &near), &hidden, &slopes, [tolerance, grain], &to_sew)?;
                         if found.1.patches.is_empty() {
                             missed = hidden.iter().map(|hidden| hidden.cell).collect();
                         }

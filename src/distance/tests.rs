@@ -355,3 +355,14 @@ fn a_patch_takes_at_most_150_bytes() {
         assert!(patches.len() > 1000 && each <= 150.0, "{each} bytes each of {}", patches.len());
     }
 }
+
+/// Beyond what is asked for patches are not known: what cells hide there is left.
+#[test]
+fn what_is_hidden_elsewhere_is_left() {
+    let pin = |x: f64| Solid::cylinder(0.2, 1.0).translate([x, 0.0, 0.2]);
+    let fillet = |radius: f64| Blend::Fillet { radius };
+    let one = Solid::cuboid([7.0, 1.5, 0.4]).union_with(pin(-2.5), fillet(0.1));
+    let both = one.union_with(pin(-1.5), fillet(0.1001));
+    let accuracy = compiled(&both).unwrap().accuracy;
+    assert!(accuracy.tolerance < 3e-4 && accuracy.error < 1e-3, "{accuracy:?}");
+}

@@ -256,7 +256,7 @@ impl Camera {
 }
 
 /// The rays of one picture, with all that they share computed once.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rays {
     eye: DVec3,
     forward: DVec3,

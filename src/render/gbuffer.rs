@@ -5,6 +5,8 @@
 //!          direction (unit)  |               number of the leaf
 //! ```
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 
 use crate::Rays;
@@ -77,16 +79,16 @@ impl Window {
     }
 }
 
-/// What each pixel of a window sees, row by row from the top.
+/// What each pixel of a window sees, row by row from the top. Clones share one list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GBuffer {
     window: Window,
-    surfaces: Vec<Surface>,
+    surfaces: Arc<Vec<Surface>>,
 }
 
 impl GBuffer {
     pub(super) fn new(window: Window, surfaces: Vec<Surface>) -> GBuffer {
-        GBuffer { window, surfaces }
+        GBuffer { window, surfaces: Arc::new(surfaces) }
     }
 
     /// The pixels that it holds.
@@ -101,7 +103,7 @@ impl GBuffer {
         &self.surfaces
     }
 
-    pub(super) fn into_surfaces(self) -> Vec<Surface> {
+    pub(super) fn into_surfaces(self) -> Arc<Vec<Surface>> {
         self.surfaces
     }
 

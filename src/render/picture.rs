@@ -13,6 +13,8 @@
 //! A ray inside an edge pixel has the visibility of the best match among the nine pixels about it;
 //! without a match it sends shadow and sky rays of its own.
 
+use std::sync::Arc;
+
 use glam::Vec4;
 
 use super::draft::Draft;
@@ -422,9 +424,9 @@ impl Picture<'_> {
     }
 
     /// What the pixels of some rows see through their middles.
-    fn surfaces(&self, window: Window, run: &Run) -> Result<Vec<Surface>, Cancelled> {
+    fn surfaces(&self, window: Window, run: &Run) -> Result<Arc<Vec<Surface>>, Cancelled> {
         match &self.draft {
-            Some(draft) => draft.surfaces(window, run),
+            Some(draft) => Ok(Arc::new(draft.surfaces(window, run)?)),
             None => Ok(self.scene.surfaces_with(&self.rays, window, run)?.into_surfaces()),
         }
     }

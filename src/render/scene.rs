@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use glam::DVec3;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::cells::Cells;
 use super::draft_mesh::DraftMesh;
@@ -21,6 +21,9 @@ use rvachev_num::{Meter, jobs};
 
 /// How far a ray from a hit starts off the surface, in proportion to the solid.
 const RAY_EPSILON: f64 = 1e-7;
+
+/// What more pixels see is not kept: some megabytes.
+const KEPT: usize = 1 << 20;
 
 /// Rays of a packet.
 const PACKET: usize = 8192;
@@ -52,6 +55,8 @@ pub struct Scene {
     cells: Option<Cells>,
     palette: Palette,
     pub(super) program: Program,
+    /// What pixels have last seen, and along which rays.
+    seen: Mutex<Option<(Rays, GBuffer)>>,
     /// What it was cut by.
     pub(super) sections: Sections,
     /// The scene that it was last cut to.
@@ -95,6 +100,7 @@ impl Solid {
                 cells,
                 palette: self.palette()?,
                 program: programs.surface.clone(),
+                seen: Mutex::new(None),
                 sections: Sections::default(),
                 cut: Mutex::new(None),
                 draft: Mutex::new(None),
@@ -119,10 +125,10 @@ impl Scene {
     }
 
     /// How many bytes the cells take that the rays so far have asked for, with the programs that
-    /// are narrowed to them. They grow with what is seen of the surface, from the first picture on,
-    /// and stay until the scene is dropped. Not counted are the solid itself, what hides light in
-    /// shaded pictures, the mesh of [drafts](crate::Quality::Draft), and the scene of the last
-    /// [cut](Scene::cut).
+    /// are narrowed to them, and what the pixels of the last picture have seen. Cells grow with what
+    /// is seen of the surface, from the first picture on, and stay until the scene is dropped. Not
+    /// counted are the solid itself, what hides light in shaded pictures, the mesh of
+    /// [drafts](crate::Quality::Draft), and the scene of the last [cut](Scene::cut).
     ///
     /// ```
     /// use rvachev::camera::Window;
@@ -137,7 +143,8 @@ impl Scene {
     /// ```
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.cells.as_ref().map_or(0, Cells::bytes)
+        let seen = self.seen().as_ref().map_or(0, |(_, seen)| size_of_val(seen.surfaces()));
+        seen + self.cells.as_ref().map_or(0, Cells::bytes)
     }
 
     /// The height at which the solid stands on a level ground: its lowest point, to a thousandth
@@ -255,6 +262,10 @@ impl Scene {
 
     /// What the pixels of `window` see along `rays`. Runs on the current rayon pool; the
     /// result is the same for any number of threads.
+    ///
+    /// What up to 2²⁰ pixels have last seen is kept, 24 bytes each: the same view once more, in
+    /// another light or style, say, takes no rays through the pixels' middles. Of another view the
+    /// cells are known as far as rays have been there before.
     #[must_use]
     pub fn surfaces(&self, rays: &Rays, window: Window) -> GBuffer {
         // A run that nobody else holds is not cancelled.
@@ -272,6 +283,14 @@ impl Scene {
     }
 
     fn trace(&self, rays: &Rays, window: Window, run: &Run) -> Result<GBuffer, Cancelled> {
+        run.check()?;
+        if let Some((of, seen)) = &*self.seen()
+            && of == rays
+            && seen.window() == window
+        {
+            run.report(1.0);
+            return Ok(seen.clone());
+        }
         let mut surfaces = vec![Surface::NONE; window.count()];
         let Some(cells) = &self.cells else { return Ok(GBuffer::new(window, surfaces)) };
         let view = View::new(cells, rays);
@@ -301,12 +320,44 @@ impl Scene {
             })?;
             Ok(())
         })?;
-        Ok(GBuffer::new(window, surfaces))
+        let seen = GBuffer::new(window, surfaces);
+        *self.seen() = (window.count() <= KEPT).then(|| (*rays, seen.clone()));
+        Ok(seen)
+    }
+
+    fn seen(&self) -> MutexGuard<'_, Option<(Rays, GBuffer)>> {
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl std::fmt::Debug for Scene {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Scene({:?})", self.bounds)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Camera, deg};
+
+    #[test]
+    fn the_last_view_is_kept() {
+        let scene = (Solid::cuboid([2.0; 3]) - Solid::sphere(1.2)).scene().expect("the solid is valid");
+        let camera = Camera::framing(&scene.bounds());
+        let see = |camera: &Camera, window: Window| scene.surfaces(&camera.rays(40, 30), window);
+        let is_kept = |a: &GBuffer, b: &GBuffer| std::ptr::eq(a.surfaces(), b.surfaces());
+        let whole = Window::whole(40, 30);
+        let first = see(&camera, whole);
+        assert!(is_kept(&first, &see(&camera, whole)) && scene.memory() > size_of_val(first.surfaces()));
+        // Another part, other points of the pixels, and another camera show something else.
+        let part = see(&camera, Window { left: 3, width: 20, ..whole });
+        assert!(part.at(9, 9) == first.at(12, 9) && part.surfaces().len() == 600);
+        assert_ne!(see(&camera, Window { within: (0.25, 0.5), ..whole }), first);
+        assert_ne!(see(&camera.orbit(deg(20.0), deg(0.0)), whole), first);
+        let again = see(&camera, whole);
+        assert!(again == first && !is_kept(&again, &first));
+        let large = Window { width: 1025, height: 1024, ..whole };
+        assert!(!is_kept(&see(&camera, large), &see(&camera, large)));
     }
 }

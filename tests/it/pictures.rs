@@ -95,10 +95,10 @@ fn one_ray_a_pixel_shows_the_same() {
 
 #[test]
 fn the_same_bytes_for_any_number_of_threads() {
-    let scene = part().scene().unwrap();
-    let camera = Camera::framing(&scene.bounds());
+    let part = part();
+    let camera = Camera::framing(&part.bounds().unwrap());
     for style in [Style::Studio, Style::Technical] {
-        let with = |threads| scene.render_with(&camera, &small(style), &Run { threads, ..Run::default() }).unwrap();
+        let with = |threads| part.render_with(&camera, &small(style), &Run { threads, ..Run::default() }).unwrap();
         let one = with(1);
         assert!(one == with(2) && one == with(3), "{style:?}");
     }

@@ -42,6 +42,8 @@ fn pictures_tell_how_far_they_are() {
         RenderSettings { cut: Some(Plane::xz(0.0)), ..base.clone() },
     ];
     for (number, settings) in looks.iter().enumerate() {
+        // What the pixels saw before is kept.
+        let scene = part().scene().unwrap();
         let (run, seen) = recorded();
         scene.render_with(&camera, settings, &run).unwrap();
         flows(&format!("picture {number}"), &seen, 40, 0.3);
