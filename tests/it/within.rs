@@ -8,6 +8,7 @@ use rvachev::{
 };
 
 use super::support::Random;
+use crate::workpieces;
 
 fn within(solid: &Solid, tolerance: f64) -> Mesh {
     let cell = CellSize::Tolerance(tolerance);
@@ -239,4 +240,15 @@ fn rims_are_within_the_tolerance() {
         assert!(mesh.check().is_sound(), "row {number}");
         assert!(off < tolerance, "row {number}: {off}");
     }
+}
+
+/// Cells beside edges of an angle near 0 are not halved without end, and where triangles are wrong
+/// once others are taken away, what is near them alone is kept.
+#[test]
+fn knife_edges_have_few_triangles() {
+    let (_, king) = workpieces::plain().into_iter().find(|(name, _)| *name == "king").unwrap();
+    let tolerance = 0.2 / 64.0 * king.bounds().unwrap().longest_side();
+    let mesh = within(&king, tolerance);
+    assert!(mesh.check().is_sound() && mesh.triangles().len() < 20_000, "{}", mesh.triangles().len());
+    assert!(mesh.deviation().unwrap() <= tolerance, "{:?} of {tolerance}", mesh.deviation());
 }

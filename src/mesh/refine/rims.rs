@@ -6,12 +6,13 @@
 //!              |---|         edge, where the solid goes on, or, at the end of a slot, the gap.
 //! ```
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
 use crate::eval::Program;
 use crate::geom::Mesh;
+use crate::mesh::groups::Groups;
 use crate::mesh::slopes::{Slope, Slopes};
 use crate::{Cancelled, Run};
 
@@ -25,6 +26,7 @@ const HALVED: usize = 5;
 
 /// An edge between two triangles that meet at an acute angle.
 struct Rim {
+    ends: [u32; 2],
     middle: DVec3,
     /// In the middles of the triangles.
     beside: [DVec3; 2],
@@ -34,6 +36,7 @@ struct Rim {
 
 /// The same with the way on beyond it.
 struct Way {
+    ends: [u32; 2],
     from: DVec3,
     way: DVec3,
     is_convex: bool,
@@ -41,12 +44,12 @@ struct Way {
 
 impl Rim {
     /// Of an edge and the corners across from it on both sides; nothing if the angle is another.
-    fn new([from, to]: [DVec3; 2], [left, right]: [DVec3; 2]) -> Option<Rim> {
+    fn new(ends: [u32; 2], [from, to]: [DVec3; 2], [left, right]: [DVec3; 2]) -> Option<Rim> {
         let along = to - from;
         let [own, other] = [along.cross(left - from), (right - from).cross(along)].map(DVec3::normalize_or_zero);
         let is_acute = own.dot(other) < ACUTE;
         let beside = [left, right].map(|corner| (from + to + corner) / 3.0);
-        is_acute.then(|| Rim { middle: from.midpoint(to), beside, is_convex: own.dot(right - from) <= 0.0 })
+        is_acute.then(|| Rim { ends, middle: from.midpoint(to), beside, is_convex: own.dot(right - from) <= 0.0 })
     }
 
     /// The way between the faces that the surface's own normals tell: those of slivers tell
@@ -55,7 +58,7 @@ impl Rim {
         let [own, other] = normals;
         let outwards = (own + other).try_normalize().filter(|_| own.dot(other) < ACUTE)?;
         let way = if self.is_convex { outwards } else { -outwards };
-        Some(Way { from: self.middle, way, is_convex: self.is_convex })
+        Some(Way { ends: self.ends, from: self.middle, way, is_convex: self.is_convex })
     }
 }
 
@@ -86,14 +89,23 @@ impl Way {
         }
         low
     }
+
+    /// Whether what is between the faces is thin half way to its end. Else it is no part of the rim
+    /// that is missing, but something else that the rim ends at: faces so far from the surface would
+    /// be told to be off.
+    fn is_thin(&self, program: &Program, (far, tolerance): (f64, f64)) -> bool {
+        let (value, gradient) = program.gradient(self.at(0.5 * far));
+        Slope { value, gradient }.distance() <= tolerance
+    }
 }
 
-/// Where the surface's rims are, and how far they go on beyond a mesh, if that is farther than the
-/// tolerance. Of rims that are cut off somewhere all is given: in larger cells beside smaller ones
-/// they would be again.
+/// Where rims go on beyond a mesh, and how far, if that is farther than the tolerance, and all of
+/// these rims: in larger cells beside smaller ones they would be cut off again. Where that has
+/// happened before, and is seen `again`, all rims of the surface.
 pub(super) fn cut_off(
     mesh: &Mesh,
     (program, tolerance): (&Program, f64),
+    again: bool,
     run: &Run,
 ) -> Result<Vec<(DVec3, f64)>, Cancelled> {
     let mut open: HashMap<[u32; 2], DVec3> = HashMap::new();
@@ -105,10 +117,10 @@ pub(super) fn cut_off(
         let corners = mesh.corners(triangle);
         for k in 0..3 {
             let [from, to] = [k, (k + 1) % 3];
-            let across = corners[(k + 2) % 3];
-            match open.remove(&[triangle[to], triangle[from]]) {
-                Some(other) => rims.extend(Rim::new([corners[from], corners[to]], [across, other])),
-                None => drop(open.insert([triangle[from], triangle[to]], across)),
+            let (ends, across) = ([triangle[from], triangle[to]], corners[(k + 2) % 3]);
+            match open.remove(&[ends[1], ends[0]]) {
+                Some(other) => rims.extend(Rim::new(ends, [corners[from], corners[to]], [across, other])),
+                None => drop(open.insert(ends, across)),
             }
         }
     }
@@ -119,14 +131,20 @@ pub(super) fn cut_off(
     let ways: Vec<Way> = ways.collect();
     let beyond: Vec<DVec3> = ways.iter().map(|way| way.at(tolerance)).collect();
     let found = slopes.at(&beyond, run)?;
-    let all = ways.iter().zip(found);
-    if !all.clone().any(|(way, slope)| way.goes_on(slope.value)) {
-        return Ok(Vec::new());
+    let mut rims = Groups::new(mesh.positions().len());
+    for way in &ways {
+        rims.join(way.ends[0], way.ends[1]);
     }
-    let end = |(way, slope): (&Way, Slope)| {
+    let (mut all, mut cut) = (Vec::new(), HashSet::new());
+    for (way, _) in ways.iter().zip(found).filter(|(way, slope)| way.goes_on(slope.value)) {
         run.check()?;
-        let far = if way.goes_on(slope.value) { way.end(program, tolerance) } else { 0.0 };
-        Ok((way.at(far), far))
-    };
-    all.map(end).collect()
+        let far = way.end(program, tolerance);
+        if way.is_thin(program, (far, tolerance)) {
+            cut.insert(rims.root(way.ends[0]));
+            all.push((way.at(far), far));
+        }
+    }
+    let are_all = again && !cut.is_empty();
+    all.extend(ways.iter().filter(|way| are_all || cut.contains(&rims.root(way.ends[0]))).map(|way| (way.from, 0.0)));
+    Ok(all)
 }

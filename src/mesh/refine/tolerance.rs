@@ -48,6 +48,13 @@ const PART: f64 = 0.25;
 /// Cells of two sizes are worse than those of one if they are so much farther off.
 const WORSE: f64 = 1.5;
 
+/// Beside a knife edge a mesh comes no nearer than cells become small, and these would have no end:
+/// it may be off by so many times as much there, which what takes triangles away leaves as it is.
+const AT_KNIFE: f64 = 2.5;
+
+/// The cosine between the normals of the triangles on both sides of a knife edge is less.
+const KNIFE: f32 = -0.5;
+
 /// How far the work is after a round, of what there was to do.
 const ROUND: f64 = 0.4;
 
@@ -78,6 +85,8 @@ pub(in crate::mesh) fn within(
     let (mut done, mut most, mut enough) = (0.1, usize::MAX, ENOUGH);
     // The last mesh in cells of one size: how far off it was, and of how many triangles.
     let mut alone = None;
+    // Whether rims were cut off in the mesh before.
+    let mut are_cut = false;
     for round in 1.. {
         let end = done + ROUND * (1.0 - done);
         let [to_mesh, to_compare] = run.stage(done, end).stages([0.5, 0.5]);
@@ -92,9 +101,13 @@ pub(in crate::mesh) fn within(
             }
         };
         let probes = probes(&mesh, job.program, tolerance, &to_compare)?;
-        let is_off = |probe: &&Probe| probe.off > tolerance;
+        let at_knife = at_knives(&mesh);
+        let allowed = |probe: &Probe| if at_knife[probe.triangle as usize] { AT_KNIFE * tolerance } else { tolerance };
+        let is_off = |probe: &&Probe| probe.off > allowed(probe);
         let mut lost = lost(&mesh, &known, (job.program, tolerance), &quiet(run))?;
-        lost.extend(cut_off(&mesh, (job.program, tolerance), &quiet(run))?);
+        let rims = cut_off(&mesh, (job.program, tolerance), are_cut, &quiet(run))?;
+        are_cut = !rims.is_empty();
+        lost.extend(rims);
         let farthest_lost = lost.iter().fold(0.0, |most: f64, (_, far)| most.max(*far));
         let far = largest(&probes).max(farthest_lost);
         if let [level] = &levels[..] {
@@ -147,6 +160,28 @@ pub(in crate::mesh) fn within(
 /// The same run, told nothing: what is done again and again is a part of a round.
 fn quiet(run: &Run) -> Run {
     Run { progress: None, ..run.clone() }
+}
+
+/// The triangles with a corner on a knife edge.
+fn at_knives(mesh: &Mesh) -> Vec<bool> {
+    let triangles = mesh.triangles();
+    let mut sides: Vec<([u32; 2], u32)> = (0..)
+        .zip(triangles)
+        .flat_map(|(n, &[a, b, c])| [[a, b], [b, c], [c, a]].map(|[a, b]| ([a.min(b), a.max(b)], n)))
+        .collect();
+    sides.sort_unstable();
+    let normal = |n: u32| {
+        let [a, b, c] = mesh.corners(triangles[n as usize]);
+        (b - a).cross(c - a).as_vec3().normalize_or_zero()
+    };
+    let mut on_knife = vec![false; mesh.positions().len()];
+    for pair in sides.windows(2) {
+        let [(side, one), (other, two)] = [pair[0], pair[1]];
+        if side == other && normal(one).dot(normal(two)) < KNIFE {
+            side.into_iter().for_each(|vertex| on_knife[vertex as usize] = true);
+        }
+    }
+    triangles.iter().map(|corners| corners.iter().any(|v| on_knife[*v as usize])).collect()
 }
 
 fn middle(mesh: &Mesh, probe: &Probe) -> DVec3 {
