@@ -20,8 +20,6 @@ mod near;
 mod quadric;
 mod start;
 
-use std::collections::HashSet;
-
 use self::collapse::Collapse;
 use self::near::distance_squared;
 use rvachev_num::order;
@@ -40,6 +38,9 @@ pub(super) const SHARE: f64 = 0.3;
 /// Where something is wrong, this part of the tolerance is left for the next time.
 const LESS: f64 = 0.35;
 
+/// So often no more is left of the tolerance than near what is wrong, and then in boxes about that.
+const PATIENT: usize = 2;
+
 /// How often it is tried without triangles that meet or are too far off.
 const ATTEMPTS: usize = 5;
 
@@ -57,7 +58,6 @@ pub(super) fn simplified(
     // What is farther off already does not come nearer.
     let most = tolerance.max(ROUNDING * deviation::largest(probes));
     let mut parts = vec![1.0; mesh.positions().len()];
-    let before: HashSet<[[u32; 3]; 3]> = mesh.triangles().iter().map(|corners| key(&mesh, corners)).collect();
     let mut along_x: Vec<u32> = (0..parts.len() as u32).collect();
     order::rising(&mut along_x, |n| f64::from(mesh.positions()[*n as usize].x));
     for attempt in 0..ATTEMPTS {
@@ -70,19 +70,17 @@ pub(super) fn simplified(
         let mut wrong = intersecting(&fewer, &to_check)?;
         // Between the points that were compared a surface may come out on the other side.
         let found = deviation::probes(&fewer, program, tolerance, &to_compare)?;
-        let far = found.iter().filter(|probe| probe.off > most).map(|probe| fewer.triangles()[probe.triangle as usize]);
-        // One that was there before is no farther off than it was: beside a knife edge it may be
-        // compared with the other side this time.
-        wrong.extend(far.filter(|corners| !before.contains(&key(&fewer, corners))));
+        let far = found.iter().filter(|probe| probe.off > most);
+        wrong.extend(far.map(|probe| fewer.triangles()[probe.triangle as usize]));
         if wrong.is_empty() {
             return Ok(told(fewer, (&found, lost), tolerance));
         }
-        // Of long triangles the box would hold much that is far from them.
-        let reach = tolerance * 2f64.powi(attempt as i32);
+        // Of long triangles the box holds much that is far from them.
+        let reach = if attempt < PATIENT { tolerance } else { f64::INFINITY };
         for triangle in wrong {
             run.check()?;
             let corners = fewer.corners(triangle);
-            let around = Bounds::from_points(corners).inflate(reach);
+            let around = Bounds::from_points(corners).inflate(tolerance);
             let place = |n: &u32| mesh.positions()[*n as usize].as_dvec3();
             let first = along_x.partition_point(|n| place(n).x < around.min.x);
             let boxed = along_x[first..].iter().take_while(|n| place(n).x <= around.max.x);
@@ -92,13 +90,6 @@ pub(super) fn simplified(
         }
     }
     Ok(told(mesh, (probes, lost), tolerance))
-}
-
-/// A triangle by the places of its corners, whichever is the first.
-fn key(mesh: &Mesh, corners: &[u32; 3]) -> [[u32; 3]; 3] {
-    let mut key = corners.map(|v| mesh.positions()[v as usize].to_array().map(f32::to_bits));
-    key.sort_unstable();
-    key
 }
 
 /// The mesh, which says how far it is off.

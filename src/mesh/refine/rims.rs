@@ -13,12 +13,15 @@ use glam::DVec3;
 use crate::eval::Program;
 use crate::geom::Mesh;
 use crate::mesh::groups::Groups;
-use crate::mesh::slopes::{Slope, Slopes};
+use crate::mesh::slopes::Slopes;
 use crate::{Cancelled, Run};
 
 /// Edges of larger angles, by their cosine, have no more missing than the middles of triangles
 /// tell.
 const ACUTE: f64 = 0.0;
+
+/// Rims are many that are one in so many.
+const MANY: usize = 256;
 
 /// So often the way beyond an edge is doubled, and what it ends in halved.
 const DOUBLED: usize = 8;
@@ -89,23 +92,14 @@ impl Way {
         }
         low
     }
-
-    /// Whether what is between the faces is thin half way to its end. Else it is no part of the rim
-    /// that is missing, but something else that the rim ends at: faces so far from the surface would
-    /// be told to be off.
-    fn is_thin(&self, program: &Program, (far, tolerance): (f64, f64)) -> bool {
-        let (value, gradient) = program.gradient(self.at(0.5 * far));
-        Slope { value, gradient }.distance() <= tolerance
-    }
 }
 
 /// Where rims go on beyond a mesh, and how far, if that is farther than the tolerance, and all of
-/// these rims: in larger cells beside smaller ones they would be cut off again. Where that has
-/// happened before, and is seen `again`, all rims of the surface.
+/// these rims: in larger cells beside smaller ones they would be cut off again. Where many are, those
+/// beside them would be as well: then it is all rims of the surface.
 pub(super) fn cut_off(
     mesh: &Mesh,
     (program, tolerance): (&Program, f64),
-    again: bool,
     run: &Run,
 ) -> Result<Vec<(DVec3, f64)>, Cancelled> {
     let mut open: HashMap<[u32; 2], DVec3> = HashMap::new();
@@ -139,12 +133,10 @@ pub(super) fn cut_off(
     for (way, _) in ways.iter().zip(found).filter(|(way, slope)| way.goes_on(slope.value)) {
         run.check()?;
         let far = way.end(program, tolerance);
-        if way.is_thin(program, (far, tolerance)) {
-            cut.insert(rims.root(way.ends[0]));
-            all.push((way.at(far), far));
-        }
+        cut.insert(rims.root(way.ends[0]));
+        all.push((way.at(far), far));
     }
-    let are_all = again && !cut.is_empty();
+    let are_all = MANY * all.len() > ways.len();
     all.extend(ways.iter().filter(|way| are_all || cut.contains(&rims.root(way.ends[0]))).map(|way| (way.from, 0.0)));
     Ok(all)
 }

@@ -85,8 +85,6 @@ pub(in crate::mesh) fn within(
     let (mut done, mut most, mut enough) = (0.1, usize::MAX, ENOUGH);
     // The last mesh in cells of one size: how far off it was, and of how many triangles.
     let mut alone = None;
-    // Whether rims were cut off in the mesh before.
-    let mut are_cut = false;
     for round in 1.. {
         let end = done + ROUND * (1.0 - done);
         let [to_mesh, to_compare] = run.stage(done, end).stages([0.5, 0.5]);
@@ -105,9 +103,7 @@ pub(in crate::mesh) fn within(
         let allowed = |probe: &Probe| if at_knife[probe.triangle as usize] { AT_KNIFE * tolerance } else { tolerance };
         let is_off = |probe: &&Probe| probe.off > allowed(probe);
         let mut lost = lost(&mesh, &known, (job.program, tolerance), &quiet(run))?;
-        let rims = cut_off(&mesh, (job.program, tolerance), are_cut, &quiet(run))?;
-        are_cut = !rims.is_empty();
-        lost.extend(rims);
+        lost.extend(cut_off(&mesh, (job.program, tolerance), &quiet(run))?);
         let farthest_lost = lost.iter().fold(0.0, |most: f64, (_, far)| most.max(*far));
         let far = largest(&probes).max(farthest_lost);
         if let [level] = &levels[..] {
