@@ -41,6 +41,7 @@ pub fn rows() -> Vec<Row> {
         row("bracket, opening", bracket, || bracket().rounded(0.8), BLENDED),
         row("bracket, closing", bracket, || bracket().filleted(1.5), BLENDED),
         row("bracket, both", bracket, || bracket().filleted(1.5).rounded(0.8), BLENDED),
+        row("thin plates, opening", plates, || plates().rounded(0.5), BLENDED),
         row("twisted, opening", twisted, || twisted().rounded(2.0), BLENDED),
         row("one fillet", || post(PLAIN), || post(Some(fillet(3.0))), BLENDED),
         row("two fillets", || three([PLAIN; 2]), || three([3.0, 2.0].map(|radius| Some(fillet(radius)))), BLENDED),
@@ -85,6 +86,12 @@ pub fn bracket() -> Solid {
     let across = |y: f64| at(hole.rotate_y(deg(90.0)), [-26.0, y, 29.0]);
     let body = plate | wall | rib;
     body.difference_all([upright(-12.0), upright(12.0), across(-12.0), across(12.0)], RFunction::MIN_MAX)
+}
+
+/// Two plates that are as thick as a ball of .5 is wide, turned.
+pub fn plates() -> Solid {
+    let wall = at(Solid::cuboid([1.0, 10.0, 15.0]), [-9.5, 0.0, 7.0]);
+    (Solid::cuboid([20.0, 10.0, 1.0]) | wall).rotate_y(deg(20.0)).rotate_x(deg(10.0))
 }
 
 /// A superellipsoid, twisted.

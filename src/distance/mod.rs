@@ -8,6 +8,10 @@
 //!                                             program's sign: a leaf like any other
 //! ```
 //!
+//! What is at a distance from a surface and too thin for cells, as the places are that the centre of a
+//! ball may be in within a wall that is as thick as the ball, is put together from that surface's
+//! patches, moved along their normals and trimmed.
+//!
 //! In the plane, what polygons are joined of and where it is at a distance is lines and arcs, which
 //! are put together without a mesh.
 //!
@@ -15,11 +19,14 @@
 //! ball of a fillet, is measured from the operand's surface. The surface is found once, when the
 //! solid is compiled, and kept for all solids that are equal to the operand.
 
+mod by_faces;
+mod chart;
 mod column;
 mod crease;
 mod facets;
 mod mend;
 mod moved;
+mod offset_faces;
 mod outline;
 mod panes;
 mod piece;

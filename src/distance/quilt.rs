@@ -441,8 +441,7 @@ fn errors(
                 let (patch, error) = (&patches[*n], &mut errors[*n]);
                 for (b, slope) in probes.iter().zip(found) {
                     error.off = error.off.max(BETWEEN * slope.distance_of(patch.bounds().longest_side()));
-                    let turn = patch.normal(*b).angle_between(slope.normal());
-                    error.turn = error.turn.max(if turn.is_finite() { turn } else { 0.0 });
+                    error.turn = error.turn.max(slope.turn(patch.normal(*b)));
                 }
             }
         }

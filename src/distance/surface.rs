@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::by_faces::by_faces;
 use super::compiled_with;
 use super::facets::{Facets, sharp};
 use super::mend::{complete, mend};
@@ -41,7 +42,7 @@ const CELLS_A_LEAF: f64 = 500.0;
 
 /// Cells are halved while more than this part of the surface is off, or a patch by [`GROSS`]
 /// tolerances.
-const FEW: f64 = 1e-4;
+pub(super) const FEW: f64 = 1e-4;
 
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;
@@ -54,6 +55,9 @@ const ATTEMPT: f64 = 0.7;
 
 /// Cells are halved down to this part where nothing is found, though something may be hidden.
 const NOTHING: f64 = 1.0 / 8.0;
+
+/// So much of what cells show may be hidden in others: else it is sheets.
+const THIN: f64 = 0.1;
 
 /// So many more cells there may be where something is hidden in them, or walls are torn.
 const HIDDEN: f64 = 12.0;
@@ -98,6 +102,8 @@ impl DistanceSource for FromMeshes {
         // The cells that would have been the last had they not torn something, and whether these
         // are it after all.
         let (mut torn, mut is_resigned) = (None::<f64>, false);
+        // Whether it is to be seen yet if it is put together from faces.
+        let mut may_have_faces = true;
         let subject = Subject { program: &programs.surface, bounds, palette: None, whole: None };
         let look = run.stage(0.0, done);
         let mut longest = size / ALONG_SIZE;
@@ -134,6 +140,17 @@ impl DistanceSource for FromMeshes {
             let is_hasty = !is_last || !is_resigned && (torn.is_some() || may_be_torn());
             if best.is_none() && is_hasty {
                 care.patience = PATIENCE;
+            }
+            // Sheets are put together from what they are at a distance from.
+            let asked = (tolerance, cell);
+            let by_faces = || by_faces((solid, programs), wanted, asked, &to_sew);
+            let is_thin = hidden.len() as f64 > THIN * count;
+            if is_thin
+                && std::mem::take(&mut may_have_faces)
+                && let Some(found) = by_faces()?
+            {
+                run.report(1.0);
+                return Ok(found);
             }
             let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= GROSS * tolerance;
             let mut is_enough = false;
@@ -177,6 +194,14 @@ impl DistanceSource for FromMeshes {
                 // Sheets that the smallest cells would not show are torn in all.
                 let smallest = cell * (4.0 * count / most).sqrt();
                 is_resigned = subject.thickness(&hidden).is_some_and(|thickness| 4.0 * thickness < smallest);
+            }
+            let is_lacking = !is_enough && !hidden.is_empty();
+            if is_lacking
+                && std::mem::take(&mut may_have_faces)
+                && let Some(found) = by_faces()?
+            {
+                run.report(1.0);
+                return Ok(found);
             }
             if let Some((reached, mut quilt)) = best.take_if(|_| is_last || is_enough) {
                 let [to_join, to_look] = run.stage(done, 1.0).stages([0.5, 0.5]);

@@ -65,6 +65,13 @@ impl Slope {
     pub(crate) fn normal(&self) -> DVec3 {
         -self.gradient.normalize_or_zero()
     }
+
+    /// How far a unit normal is turned from it, the length of their difference: the angle, if it is
+    /// small; 0 where there is no gradient.
+    pub(crate) fn turn(&self, normal: DVec3) -> f64 {
+        let own = self.normal();
+        if own == DVec3::ZERO { 0.0 } else { own.distance(normal) }
+    }
 }
 
 /// Points of a box, by number, and the program there.

@@ -10,6 +10,7 @@ mod nested;
 mod nothing;
 mod plane;
 mod reference;
+mod sheets;
 mod subject;
 mod walls;
 

@@ -1,0 +1,411 @@
+//! Offset faces: patches moved along their normals, with canals about their edges and parts of balls
+//! about their corners, trimmed to where they are at their distance.
+//!
+//! ```text
+//!     _________________           The wall is as thick as a ball is wide: what is left for the ball's centre is a
+//!     . . . . . . . . . |         sheet that no cell shows. Moved faces lie in it, whatever cells are. What of them
+//!     _______________   |         is nearer to another face than they were moved by is trimmed off.
+//! ```
+//!
+//! All that is at a distance from a surface is there: a foot is on a face, on an edge or in a
+//! corner, and what it is the foot of is along a normal, between two, or among several.
+//!
+//! Source: W. Tiller and E. Hanson, *Offsets of Two-Dimensional Profiles* (1984), for offsets that
+//! are moved first and trimmed then.
+
+use glam::{DVec2, DVec3};
+
+use super::chart::Chart;
+use crate::mesh::{Slope, Slopes};
+use crate::{Bounds, Cancelled, Run};
+use rvachev_field::{Patch, Patches};
+
+/// What is smaller than this part of what they are moved by may be missed.
+const SPACING: f64 = 1.0 / 3.0;
+
+/// A piece is looked at in so many places along a side at most, else it is divided first.
+const ALONG: f64 = 24.0;
+
+/// What is off the level by less than this part of the tolerance is at it.
+const ON: f64 = 0.5;
+
+/// So many steps lead from a place to what is narrower than places are apart, and no farther than so
+/// many times that.
+const STEPS: usize = 3;
+const REACH: f64 = 1.5;
+
+/// Pieces of so many tolerances are divided no more.
+const SMALL: f64 = 2.0;
+
+/// Where a face ends is found to this part of the tolerance.
+const RIM: f64 = 0.2;
+
+/// A line that a face ends along is seen to be straight so many tolerances beside it, at these
+/// parts of it.
+const BESIDE: f64 = 0.6;
+const PARTS: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// Between the places where patches are compared with the level they may be off by so much more.
+const BETWEEN: f64 = 1.5;
+
+/// Where a patch is compared with the level.
+const PROBES: [[f64; 3]; 4] = [[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
+
+/// So many pieces are looked at, no more, so many at a time.
+const MOST: usize = 1 << 18;
+const AT_ONCE: usize = 1 << 12;
+
+/// What is moved, and where to.
+pub(super) struct Offset<'a> {
+    pub(super) patches: &'a Patches,
+    /// What the patches are the surface of.
+    pub(super) of: &'a Slopes<'a>,
+    /// Outwards.
+    pub(super) by: f64,
+    /// What is 0 on the faces.
+    pub(super) level: &'a Slopes<'a>,
+    /// The part that is asked for.
+    pub(super) near: &'a Bounds,
+    pub(super) tolerance: f64,
+    /// Values may be off by so much.
+    pub(super) grain: f64,
+    /// Pieces are no larger where faces end.
+    pub(super) cell: f64,
+}
+
+/// A triangle of a chart.
+#[derive(Clone, Copy)]
+pub(super) struct Piece {
+    pub(super) chart: u32,
+    pub(super) corners: [DVec2; 3],
+    /// Whether it was trimmed to what is at the level.
+    pub(super) is_trimmed: bool,
+}
+
+impl Piece {
+    fn at(&self, [a, b, c]: [f64; 3]) -> DVec2 {
+        a * self.corners[0] + b * self.corners[1] + c * self.corners[2]
+    }
+
+    fn quarters(&self) -> [Piece; 4] {
+        let [a, b, c] = self.corners;
+        let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+        let parts = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
+        parts.map(|corners| Piece { corners, is_trimmed: false, ..*self })
+    }
+}
+
+/// What is found, and what is left for later.
+#[derive(Default)]
+struct Found {
+    /// Each with how far it is off.
+    patches: Vec<(Patch, f64)>,
+    /// What is too narrow for places to show.
+    narrow: Vec<Piece>,
+    /// What was found before it was looked for.
+    known: Option<Patches>,
+}
+
+/// A piece that is all at the level, as its places tell.
+struct Whole {
+    piece: Piece,
+    size: f64,
+    patch: Patch,
+}
+
+impl Offset<'_> {
+    /// The faces, and how far each is off; nothing if it takes too many pieces.
+    pub(super) fn faces(&self, run: &Run) -> Result<Option<Vec<(Patch, f64)>>, Cancelled> {
+        let (charts, mut pieces) = self.charts(run)?;
+        let mut all = Found::default();
+        let mut count = 0;
+        while !pieces.is_empty() {
+            let mut next = Vec::new();
+            for part in pieces.chunks(AT_ONCE) {
+                count += part.len();
+                if count > MOST {
+                    return Ok(None);
+                }
+                let whole = self.look((&charts, part), (&mut next, &mut all), run)?;
+                self.compare(whole, (&mut next, &mut all), run)?;
+            }
+            if next.is_empty() && all.known.is_none() {
+                // What is narrow is looked for where it is more than the rim of what is wide.
+                next = std::mem::take(&mut all.narrow);
+                let wide: Vec<Patch> = all.patches.iter().map(|(patch, _)| *patch).collect();
+                all.known = Some(Patches::new(&wide, &Run { progress: None, ..run.clone() })?);
+            }
+            pieces = next;
+            run.report(count as f64 / MOST as f64);
+        }
+        Ok(Some(all.patches))
+    }
+
+    /// What of pieces is at the level: those that are, as a whole; patches of small ones, and pieces
+    /// to be looked at again.
+    fn look(
+        &self,
+        (charts, pieces): (&[Chart], &[Piece]),
+        (next, found): (&mut Vec<Piece>, &mut Found),
+        run: &Run,
+    ) -> Result<Vec<Whole>, Cancelled> {
+        let chart = |piece: &Piece| &charts[piece.chart as usize];
+        let size = |piece: &Piece| {
+            let [a, b, c] = piece.corners.map(|at| chart(piece).at(at));
+            a.distance(b).max(b.distance(c)).max(c.distance(a))
+        };
+        let sizes: Vec<f64> = pieces.iter().map(size).collect();
+        let spacing = self.cell.min(SPACING * self.by.abs());
+        let (mut points, mut ends) = (Vec::new(), Vec::with_capacity(pieces.len()));
+        for (piece, size) in pieces.iter().zip(&sizes) {
+            let along = (size / spacing).ceil().max(2.0);
+            if along <= ALONG && !piece.is_trimmed {
+                let n = along as usize;
+                let rows = (0..=n).flat_map(|i| (0..=n - i).map(move |j| [i, j, n - i - j]));
+                let places = rows.map(|row| row.map(|k| k as f64 / along)).chain([PROBES[0]]);
+                points.extend(places.map(|place| chart(piece).at(piece.at(place))));
+            }
+            ends.push(points.len());
+        }
+        let slopes = self.level.at(&points, run)?;
+        let (mut whole, mut start) = (Vec::new(), 0);
+        for ((piece, size), end) in pieces.iter().zip(sizes).zip(ends) {
+            let places = start..end;
+            start = end;
+            let count = places.len();
+            let on = slopes[places.clone()].iter().filter(|slope| self.is_on(slope.value)).count();
+            if piece.is_trimmed || count > 0 && on == count && self.is_near(&points[places.clone()]) {
+                whole.push(Whole { piece: *piece, size, patch: self.patch(chart(piece), piece) });
+            } else if count == 0 {
+                next.extend(piece.quarters());
+            } else if !self.is_near(&points[places.clone()]) {
+                // Nobody asks for it.
+            } else if on == 0 {
+                let own = (&points[places.clone()], &slopes[places]);
+                match &found.known {
+                    Some(known)
+                        if size > SMALL * self.tolerance
+                            && self.has_narrow(chart(piece), piece, own, |p| {
+                                !known.is_within(p, SMALL * self.tolerance)
+                            }) =>
+                    {
+                        next.extend(piece.quarters())
+                    }
+                    None if self.has_narrow(chart(piece), piece, own, |_| true) => found.narrow.push(*piece),
+                    _ => {}
+                }
+            } else if size > self.cell || !self.trim(chart(piece), piece, next) {
+                if size > SMALL * self.tolerance {
+                    next.extend(piece.quarters());
+                } else if 2 * on > count {
+                    found.patches.push((self.patch(chart(piece), piece), size));
+                }
+            }
+        }
+        Ok(whole)
+    }
+
+    /// Takes the patches of pieces that are within the tolerance; the others are divided.
+    fn compare(
+        &self,
+        whole: Vec<Whole>,
+        (next, found): (&mut Vec<Piece>, &mut Found),
+        run: &Run,
+    ) -> Result<(), Cancelled> {
+        let probes: Vec<DVec3> = whole.iter().flat_map(|own| PROBES.map(|place| own.patch.point(place))).collect();
+        let slopes = self.level.at(&probes, run)?;
+        for (Whole { piece, size, patch }, slopes) in whole.into_iter().zip(slopes.chunks(PROBES.len())) {
+            let off = BETWEEN * slopes.iter().map(|slope| slope.distance_of(size)).fold(0.0, f64::max);
+            let is_small = size < SMALL * self.tolerance;
+            if off <= self.tolerance + self.grain || is_small && off <= size {
+                found.patches.push((patch, off));
+            } else if !is_small {
+                next.extend(piece.quarters());
+            }
+        }
+        Ok(())
+    }
+
+    fn is_near(&self, points: &[DVec3]) -> bool {
+        points.iter().any(|p| self.near.contains(*p))
+    }
+
+    fn is_on(&self, value: f64) -> bool {
+        value.abs() <= ON * (self.tolerance + self.grain)
+    }
+
+    /// Whether slopes along a piece lead from its places, none of which is at the level, to one that
+    /// is, and is asked for.
+    fn has_narrow(
+        &self,
+        chart: &Chart,
+        piece: &Piece,
+        (points, slopes): (&[DVec3], &[Slope]),
+        is_asked: impl Fn(DVec3) -> bool,
+    ) -> bool {
+        let [a, b, c] = piece.corners.map(|at| chart.at(at));
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        // So many places are between as many sides, and the middle.
+        let along = (f64::sqrt(8.0 * points.len() as f64 - 7.0) - 3.0) / 2.0;
+        let leads = |(from, slope): (&DVec3, &Slope)| {
+            let (mut p, mut slope) = (*from, *slope);
+            for _ in 0..STEPS {
+                let rise = slope.gradient.reject_from_normalized(normal);
+                p -= slope.value / rise.length_squared() * rise;
+                if !(p.distance(*from) <= REACH * size / along) {
+                    return false;
+                }
+                let (value, gradient) = self.level.program.gradient(p);
+                slope = Slope { value, gradient };
+                if self.is_on(value) {
+                    return is_asked(p);
+                }
+            }
+            false
+        };
+        points.iter().zip(slopes).any(leads)
+    }
+
+    /// The patch of a piece.
+    fn patch(&self, chart: &Chart, piece: &Piece) -> Patch {
+        let corners = piece.corners.map(|at| chart.at(at));
+        let displacements = [0, 1, 2].map(|k| {
+            let middle = 0.5 * (piece.corners[k] + piece.corners[(k + 1) % 3]);
+            let off = chart.at(middle) - 0.5 * (corners[k] + corners[(k + 1) % 3]);
+            if off.length() < 1e-2 * self.tolerance { DVec3::ZERO } else { off }
+        });
+        Patch { corners, displacements }
+    }
+
+    /// Trims a piece to what is at the level, if that ends along a line that is all but straight:
+    /// gives whether it does.
+    fn trim(&self, chart: &Chart, piece: &Piece, next: &mut Vec<Piece>) -> bool {
+        let is_on = |at: DVec2| self.is_on(self.level.program.value(chart.at(at)));
+        let apart = |from: DVec2, to: DVec2| chart.at(from).distance(chart.at(to));
+        let on = piece.corners.map(is_on);
+        let count = on.iter().filter(|own| **own).count();
+        if count == 0 || count == 3 {
+            return false;
+        }
+        // The corner that is alone on its side of the line.
+        let alone = (0..3).find(|k| on[*k] == (count == 1)).unwrap_or(0);
+        let [a, b, c] = [0, 1, 2].map(|k| piece.corners[(alone + k) % 3]);
+        let end = |mut inner: DVec2, mut outer: DVec2| {
+            while apart(inner, outer) > RIM * self.tolerance {
+                let middle = 0.5 * (inner + outer);
+                if is_on(middle) { inner = middle } else { outer = middle }
+            }
+            inner
+        };
+        let [ab, ac] = if count == 1 { [end(a, b), end(a, c)] } else { [end(b, a), end(c, a)] };
+        // What is at the level along a side alone is a neighbour's.
+        let width = if count == 1 { apart(a, ab).min(apart(a, ac)) } else { apart(b, ab).max(apart(c, ac)) };
+        if width < self.tolerance {
+            return true;
+        }
+        let beside = |part: f64| {
+            let middle = ab.lerp(ac, part);
+            let step = (BESIDE * self.tolerance / apart(middle, a).max(self.tolerance)).min(0.5) * (a - middle);
+            [is_on(middle + step), is_on(middle - step)]
+        };
+        let is_short = apart(ab, ac) <= SMALL * self.tolerance;
+        if !is_short && PARTS.iter().any(|part| beside(*part) != [count == 1, count == 2]) {
+            return false;
+        }
+        let part = |corners: [DVec2; 3]| Piece { corners, is_trimmed: true, ..*piece };
+        match count {
+            1 => next.push(part([a, ab, ac])),
+            _ => next.extend([part([ab, b, c]), part([ab, c, ac])]),
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::compiled_with;
+    use crate::distance::surface::FromMeshes;
+    use crate::eval::{Wanted, surface};
+    use crate::{Solid, deg};
+    use glam::DQuat;
+
+    /// The faces of what is moved, and the program that is 0 on them.
+    fn faces(solid: &Solid, by: f64, tolerance: f64) -> Vec<(Patch, f64)> {
+        let run = Run::default();
+        let programs = compiled_with(solid, &run).unwrap();
+        let wanted = Wanted { length: by.abs(), tolerance: None, region: &Bounds::ALL, by_patches: false };
+        let surface = surface(solid, &programs, &wanted, &FromMeshes, &run).unwrap();
+        let moved = compiled_with(&solid.offset(by), &run).unwrap();
+        let offset = Offset {
+            patches: &surface.patches,
+            of: &Slopes { program: &programs.surface, precision: 1e-7 },
+            by,
+            level: &Slopes { program: &moved.surface, precision: 1e-7 },
+            near: &Bounds::ALL,
+            tolerance,
+            grain: moved.accuracy.grain(),
+            cell: solid.bounds().unwrap().longest_side() / 24.0,
+        };
+        offset.faces(&run).unwrap().unwrap()
+    }
+
+    /// Random numbers from 0 to 1.
+    fn units() -> impl FnMut() -> f64 {
+        let mut state = 1u64;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    #[test]
+    fn what_is_at_a_distance_is_all_of_them() {
+        let plate = Solid::cuboid([6.0, 4.0, 1.0]) | Solid::cuboid([1.0, 4.0, 5.0]).translate([-2.5, 0.0, 2.0]);
+        let plate = plate - Solid::cylinder(0.8, 3.0).translate([1.0, 0.3, 0.0]);
+        let turned = plate.rotate_x(deg(21.0)).rotate_y(deg(8.0));
+        let ball = Solid::superellipsoid([3.0, 2.0, 1.5], 0.5, 0.7) - Solid::sphere(1.0).translate([0.0, 0.0, 1.5]);
+        for (solid, by) in [(&turned, -0.3), (&ball, -0.2), (&ball, 0.3)] {
+            let tolerance = 2e-3 * f64::abs(by);
+            let found = faces(solid, by, tolerance);
+            let patches: Vec<Patch> = found.into_iter().map(|(patch, _)| patch).collect();
+            let patches = Patches::new(&patches, &Run::default()).unwrap();
+            let moved = solid.offset(by);
+            let bounds = solid.bounds().unwrap().inflate(by.max(0.0));
+            let (mut unit, mut asked) = (units(), 0);
+            for _ in 0..20_000 {
+                let p = bounds.min + bounds.size() * DVec3::new(unit(), unit(), unit());
+                let value = moved.value(p).unwrap();
+                // On the side that was moved to, values are how far it is.
+                if value * by < 0.0 && value.abs() < by.abs() {
+                    let off = (patches.nearest(p).unwrap().distance - value.abs()).abs();
+                    assert!(off < 1.5 * tolerance, "by {by}: off by {off} at {p}");
+                    asked += 1;
+                }
+            }
+            assert!(asked > 500, "by {by}: {asked} points");
+        }
+    }
+
+    /// Half-way between the faces of a wall there is a sheet, to its ends.
+    #[test]
+    fn sheets_within_walls_are_whole() {
+        let turn = |p: Solid| p.rotate_x(deg(21.0)).rotate_y(deg(8.0));
+        let plate = |size: [f64; 3]| Solid::cuboid(size);
+        let wall = plate([6.0, 4.0, 1.0]) | plate([1.0, 4.0, 5.0]).translate([-2.5, 0.0, 2.0]);
+        let (by, tolerance) = (-0.5 + 1e-3, 1e-3);
+        let found = faces(&turn(wall), by, tolerance);
+        assert!(found.iter().all(|(_, off)| *off <= 3.0 * tolerance));
+        let patches: Vec<Patch> = found.into_iter().map(|(patch, _)| patch).collect();
+        let patches = Patches::new(&patches, &Run::default()).unwrap();
+        // Corners of the sheets, and one beyond.
+        let at =
+            |p: DVec3| DQuat::from_rotation_y(8f64.to_radians()) * (DQuat::from_rotation_x(21f64.to_radians()) * p);
+        let off = |x: f64, y: f64, z: f64| patches.nearest(at(DVec3::new(x, y, z))).unwrap().distance;
+        for [x, y, z] in [[2.5, 1.5, 0.0], [2.5, -1.5, 0.0], [-2.5, 1.5, 4.0], [-2.5, -1.5, 4.0], [0.0, 0.0, 0.0]] {
+            assert!(off(x, y, z) < 2e-3, "{} at {x} {y} {z}", off(x, y, z));
+        }
+        assert!((off(2.7, 0.0, 0.0) - 0.2).abs() < 2e-3, "{}", off(2.7, 0.0, 0.0));
+    }
+}
