@@ -24,6 +24,9 @@ const TURNED: f64 = 0.7;
 /// The cosine up to which normals are too far apart for a part of a ball between them.
 const OPPOSITE: f64 = -0.7;
 
+/// A direction of about unit length that nothing is built along.
+const ACROSS: DVec3 = DVec3::new(0.5477, 0.6123, 0.5711);
+
 /// A map of a triangle or a square onto a surface.
 pub(super) enum Chart {
     /// A patch, moved: its corners and the middles of its sides.
@@ -195,8 +198,9 @@ fn flat_normal(nodes: &[DVec3; 6], slack: f64) -> Option<DVec3> {
 /// Parts of balls about corners where three or more normals meet: triangles about the mean of all.
 fn balls(corners: Vec<(DVec3, DVec3)>, by: f64, slack: f64) -> Vec<Chart> {
     let mut corners = corners;
-    // In order along x; those at one place are near each other then.
-    order::rising(&mut corners, |(p, _)| p.x);
+    // In this order, those at one place are near each other.
+    let place = |p: DVec3| p.dot(ACROSS);
+    order::rising(&mut corners, |(p, _)| place(*p));
     let mut is_taken = vec![false; corners.len()];
     let mut balls = Vec::new();
     for first in 0..corners.len() {
@@ -207,7 +211,7 @@ fn balls(corners: Vec<(DVec3, DVec3)>, by: f64, slack: f64) -> Vec<Chart> {
         let mut normals = Vec::<DVec3>::new();
         for at in first..corners.len() {
             let (p, normal) = corners[at];
-            if p.x > corner.x + slack {
+            if place(p) > place(corner) + slack {
                 break;
             }
             if is_taken[at] || p.distance(corner) > slack {

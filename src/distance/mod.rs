@@ -8,9 +8,9 @@
 //!                                             program's sign: a leaf like any other
 //! ```
 //!
-//! What is at a distance from a surface and too thin for cells, as the places are that the centre of a
-//! ball may be in within a wall that is as thick as the ball, is put together from that surface's
-//! patches, moved along their normals and trimmed.
+//! What is at a distance from a surface and too thin for cells, as that is where the centre of a
+//! ball may be within a wall as thick as the ball, is put together from that surface's patches,
+//! moved along their normals and trimmed.
 //!
 //! In the plane, what polygons are joined of and where it is at a distance is lines and arcs, which
 //! are put together without a mesh.

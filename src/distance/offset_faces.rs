@@ -1,5 +1,5 @@
-//! Offset faces: patches moved along their normals, with canals about their edges and parts of balls
-//! about their corners, trimmed to where they are at their distance.
+//! Offset faces: patches moved along their normals, with canals about their edges and parts of
+//! balls about their corners, trimmed to where they are at their distance.
 //!
 //! ```text
 //!     _________________           The wall is as thick as a ball is wide: what is left for the ball's centre is a
@@ -29,8 +29,8 @@ const ALONG: f64 = 24.0;
 /// What is off the level by less than this part of the tolerance is at it.
 const ON: f64 = 0.5;
 
-/// So many steps lead from a place to what is narrower than places are apart, and no farther than so
-/// many times that.
+/// So many steps lead from a place to what is narrower than places are apart, and no farther than
+/// so many times that.
 const STEPS: usize = 3;
 const REACH: f64 = 1.5;
 
@@ -141,8 +141,8 @@ impl Offset<'_> {
         Ok(Some(all.patches))
     }
 
-    /// What of pieces is at the level: those that are, as a whole; patches of small ones, and pieces
-    /// to be looked at again.
+    /// What of pieces is at the level: those that are, as a whole; patches of small ones, and
+    /// pieces to be looked at again.
     fn look(
         &self,
         (charts, pieces): (&[Chart], &[Piece]),
@@ -234,8 +234,8 @@ impl Offset<'_> {
         value.abs() <= ON * (self.tolerance + self.grain)
     }
 
-    /// Whether slopes along a piece lead from its places, none of which is at the level, to one that
-    /// is, and is asked for.
+    /// Whether slopes along a piece lead from its places, none of which is at the level, to one
+    /// that is, and is asked for.
     fn has_narrow(
         &self,
         chart: &Chart,
@@ -253,7 +253,7 @@ impl Offset<'_> {
             for _ in 0..STEPS {
                 let rise = slope.gradient.reject_from_normalized(normal);
                 p -= slope.value / rise.length_squared() * rise;
-                if !(p.distance(*from) <= REACH * size / along) {
+                if p.is_nan() || p.distance(*from) > REACH * size / along {
                     return false;
                 }
                 let (value, gradient) = self.level.program.gradient(p);

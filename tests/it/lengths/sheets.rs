@@ -1,5 +1,5 @@
-//! Roundings by a ball that is as wide as a wall, a bar or a gap, or a little smaller: its centre rolls
-//! on a sheet or along a line, however these are turned and wherever they taper off.
+//! Roundings by a ball that is as wide as a wall, a bar or a gap, or a little smaller: its centre
+//! rolls on a sheet or along a line, however these are turned and wherever they taper off.
 
 use super::*;
 use rvachev::deg;
