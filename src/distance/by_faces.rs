@@ -35,12 +35,13 @@ pub(super) fn by_faces(
     }
     let offset = Offset {
         patches: &surface.patches,
-        of: &Slopes { program: &own.surface, precision: tolerance },
+        of: &Slopes { program: &own.surface, precision: tolerance, reach: by.abs() },
         by,
-        level: &Slopes { program: &programs.surface, precision: tolerance },
+        level: &Slopes { program: &programs.surface, precision: tolerance, reach: by.abs() },
         near: &near,
         tolerance,
         grain: programs.accuracy.grain(),
+        slack: surface.accuracy.error,
         cell,
     };
     let Some(faces) = offset.faces(to_move)? else { return Ok(None) };

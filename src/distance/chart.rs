@@ -176,7 +176,10 @@ impl Offset<'_> {
         let found = self.of.at(&points, run)?;
         let mut canals = Vec::new();
         for (part, found) in parts.iter().zip(found.chunks(3)) {
-            let to = [0, 1, 2].map(|i| found[i].normal());
+            let mut to = [0, 1, 2].map(|i| found[i].normal());
+            // Ends may be beside another face.
+            let middle = to[2];
+            to.iter_mut().filter(|normal| normal.dot(middle) < TURNED).for_each(|normal| *normal = middle);
             let turned = (0..3).any(|i| part.normals[i].distance(to[i]) > CREASE);
             // Outwards there are canals about convex edges, inwards about concave ones.
             if turned && (0..3).any(|i| self.by * to[i].dot(part.out) > 0.0) {

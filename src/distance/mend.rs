@@ -242,7 +242,7 @@ fn anew(slopes: &Slopes<'_>, bounds: &Bounds, care: Care, run: &Run) -> Result<O
         (0..3).any(|axis| at(axis, bounds.min[axis]) || at(axis, bounds.max[axis]))
     };
     let mut facets = Facets::new(&mesh, |corners| !corners.iter().all(is_on));
-    let slopes = Slopes { program: &program, precision: slopes.precision };
+    let slopes = Slopes { program: &program, ..*slopes };
     facets.leave_faces(bounds, &slopes, &alone)?;
     Quilt::new(facets, &slopes, care, &alone)
 }

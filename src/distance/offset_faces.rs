@@ -16,6 +16,7 @@
 use glam::{DVec2, DVec3};
 
 use super::chart::Chart;
+use super::quilt::{BETWEEN, PROBES};
 use crate::mesh::{Slope, Slopes};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::{Patch, Patches};
@@ -28,6 +29,9 @@ const ALONG: f64 = 24.0;
 
 /// What is off the level by less than this part of the tolerance is at it.
 const ON: f64 = 0.5;
+
+/// What rises by less than this part of its size is along the level.
+const SLANT: f64 = 0.02;
 
 /// So many steps lead from a place to what is narrower than places are apart, and no farther than
 /// so many times that.
@@ -45,11 +49,9 @@ const RIM: f64 = 0.2;
 const BESIDE: f64 = 0.6;
 const PARTS: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// Between the places where patches are compared with the level they may be off by so much more.
-const BETWEEN: f64 = 1.5;
-
-/// Where a patch is compared with the level.
-const PROBES: [[f64; 3]; 4] = [[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
+/// What is halved so often is as small as numbers tell apart, but where a chart has a jump: between
+/// normals that point away from each other.
+const DEEPEST: usize = 32;
 
 /// So many pieces are looked at, no more, so many at a time.
 const MOST: usize = 1 << 18;
@@ -69,6 +71,8 @@ pub(super) struct Offset<'a> {
     pub(super) tolerance: f64,
     /// Values may be off by so much.
     pub(super) grain: f64,
+    /// Patches are off by so much.
+    pub(super) slack: f64,
     /// Pieces are no larger where faces end.
     pub(super) cell: f64,
 }
@@ -110,6 +114,8 @@ struct Found {
 struct Whole {
     piece: Piece,
     size: f64,
+    /// How much more its patch may be off.
+    slack: f64,
     patch: Patch,
 }
 
@@ -118,7 +124,7 @@ impl Offset<'_> {
     pub(super) fn faces(&self, run: &Run) -> Result<Option<Vec<(Patch, f64)>>, Cancelled> {
         let (charts, mut pieces) = self.charts(run)?;
         let mut all = Found::default();
-        let mut count = 0;
+        let (mut count, mut depth) = (0, 0);
         while !pieces.is_empty() {
             let mut next = Vec::new();
             for part in pieces.chunks(AT_ONCE) {
@@ -129,9 +135,13 @@ impl Offset<'_> {
                 let whole = self.look((&charts, part), (&mut next, &mut all), run)?;
                 self.compare(whole, (&mut next, &mut all), run)?;
             }
+            depth += 1;
+            if depth == DEEPEST {
+                next.clear();
+            }
             if next.is_empty() && all.known.is_none() {
                 // What is narrow is looked for where it is more than the rim of what is wide.
-                next = std::mem::take(&mut all.narrow);
+                (next, depth) = (std::mem::take(&mut all.narrow), 0);
                 let wide: Vec<Patch> = all.patches.iter().map(|(patch, _)| *patch).collect();
                 all.known = Some(Patches::new(&wide, &Run { progress: None, ..run.clone() })?);
             }
@@ -174,8 +184,11 @@ impl Offset<'_> {
             start = end;
             let count = places.len();
             let on = slopes[places.clone()].iter().filter(|slope| self.is_on(slope.value)).count();
-            if piece.is_trimmed || count > 0 && on == count && self.is_near(&points[places.clone()]) {
-                whole.push(Whole { piece: *piece, size, patch: self.patch(chart(piece), piece) });
+            let is_beside = on < count && self.is_level(&slopes[places.clone()], size);
+            let is_whole = count > 0 && (on == count || is_beside);
+            if piece.is_trimmed || is_whole && self.is_near(&points[places.clone()]) {
+                let slack = if is_beside { BETWEEN * self.slack } else { 0.0 };
+                whole.push(Whole { piece: *piece, size, slack, patch: self.patch(chart(piece), piece) });
             } else if count == 0 {
                 next.extend(piece.quarters());
             } else if !self.is_near(&points[places.clone()]) {
@@ -214,10 +227,10 @@ impl Offset<'_> {
     ) -> Result<(), Cancelled> {
         let probes: Vec<DVec3> = whole.iter().flat_map(|own| PROBES.map(|place| own.patch.point(place))).collect();
         let slopes = self.level.at(&probes, run)?;
-        for (Whole { piece, size, patch }, slopes) in whole.into_iter().zip(slopes.chunks(PROBES.len())) {
+        for (Whole { piece, size, slack, patch }, slopes) in whole.into_iter().zip(slopes.chunks(PROBES.len())) {
             let off = BETWEEN * slopes.iter().map(|slope| slope.distance_of(size)).fold(0.0, f64::max);
             let is_small = size < SMALL * self.tolerance;
-            if off <= self.tolerance + self.grain || is_small && off <= size {
+            if off <= self.tolerance + self.grain + slack || is_small && off <= size {
                 found.patches.push((patch, off));
             } else if !is_small {
                 next.extend(piece.quarters());
@@ -232,6 +245,14 @@ impl Offset<'_> {
 
     fn is_on(&self, value: f64) -> bool {
         value.abs() <= ON * (self.tolerance + self.grain)
+    }
+
+    /// Whether a piece is beside the level, as its patch is beside the surface.
+    fn is_level(&self, slopes: &[Slope], size: f64) -> bool {
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        slopes.iter().for_each(|slope| (least, most) = (least.min(slope.value), most.max(slope.value)));
+        let on = ON * (self.tolerance + self.grain);
+        most - least <= on.min(SLANT * size) && most.max(-least) <= on + self.slack
     }
 
     /// Whether slopes along a piece lead from its places, none of which is at the level, to one
@@ -292,7 +313,10 @@ impl Offset<'_> {
         let alone = (0..3).find(|k| on[*k] == (count == 1)).unwrap_or(0);
         let [a, b, c] = [0, 1, 2].map(|k| piece.corners[(alone + k) % 3]);
         let end = |mut inner: DVec2, mut outer: DVec2| {
-            while apart(inner, outer) > RIM * self.tolerance {
+            for _ in 0..DEEPEST {
+                if apart(inner, outer) <= RIM * self.tolerance {
+                    break;
+                }
                 let middle = 0.5 * (inner + outer);
                 if is_on(middle) { inner = middle } else { outer = middle }
             }
@@ -340,13 +364,14 @@ mod tests {
         let moved = compiled_with(&solid.offset(by), &run).unwrap();
         let offset = Offset {
             patches: &surface.patches,
-            of: &Slopes { program: &programs.surface, precision: 1e-7 },
+            of: &Slopes { program: &programs.surface, precision: 1e-7, reach: by.abs() },
             by,
-            level: &Slopes { program: &moved.surface, precision: 1e-7 },
+            level: &Slopes { program: &moved.surface, precision: 1e-7, reach: by.abs() },
             near: &Bounds::ALL,
             tolerance,
             grain: moved.accuracy.grain(),
-            cell: solid.bounds().unwrap().longest_side() / 24.0,
+            slack: 0.0,
+            cell: solid.bounds().unwrap().longest_side() / 8.0,
         };
         offset.faces(&run).unwrap().unwrap()
     }

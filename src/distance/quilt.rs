@@ -77,13 +77,14 @@ const ASTRAY: f64 = 0.4;
 const STEPS: usize = 4;
 
 /// Where a patch is compared with the surface.
-const PROBES: [[f64; 3]; 4] = [[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
+pub(super) const PROBES: [[f64; 3]; 4] =
+    [[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
 
 /// So many patches are compared at a time: their probes take more memory than they do.
 const AT_ONCE: usize = 1 << 16;
 
 /// Between the probes patches may be off by so much more than at them.
-const BETWEEN: f64 = 1.5;
+pub(super) const BETWEEN: f64 = 1.5;
 
 /// The patches, and how far they may be off.
 pub(super) struct Quilt {

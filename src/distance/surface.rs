@@ -94,7 +94,6 @@ impl DistanceSource for FromMeshes {
         }
         let tolerance = self.tolerance(programs, wanted);
         let grain = programs.accuracy.grain();
-        let slopes = Slopes { program: &programs.surface, precision: tolerance };
         let enough = CELLS + CELLS_A_LEAF * programs.surface.leaf_count() as f64;
         // Of others, tips and cusps hide something in cells of any size.
         let is_gentle = programs.surface.has_gentle_leaves();
@@ -115,6 +114,7 @@ impl DistanceSource for FromMeshes {
             // What is left is for smaller cells.
             let end = done + ATTEMPT * (1.0 - done);
             let [to_mesh, to_sew] = run.stage(done, end).stages([0.5, 0.5]);
+            let slopes = Slopes { program: &programs.surface, precision: tolerance, reach: cell };
             done = end;
             let mut seen = bounds;
             let (facets, mut hidden) = match flat {

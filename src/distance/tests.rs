@@ -108,7 +108,7 @@ fn faces_that_cut_a_surface_off_are_left_out() {
         let part = compiled(&(&slab & Solid::cuboid([2.0; 3]))).unwrap();
         let mesh = sharp(&part.surface, box_, CELL, &run).unwrap();
         let of_slab = compiled(&slab).unwrap();
-        let slopes = Slopes { program: &of_slab.surface, precision: 1e-4 };
+        let slopes = Slopes { program: &of_slab.surface, precision: 1e-4, reach: 0.1 };
         let is_on = |p: &DVec3| p.abs().max_element() > 1.0 - 1e-3 * CELL;
         let mut facets = Facets::new(&mesh, |corners| !corners.iter().all(is_on));
         left += facets.triangles.len();
@@ -212,7 +212,7 @@ fn beside_a_pin(positions: &[[f64; 3]], triangles: &[([u32; 3], bool)]) -> Quilt
     };
     let normals = triangles.iter().map(normals).collect();
     let facets = Facets { triangles: triangles.iter().map(|(corners, _)| *corners).collect(), normals, positions };
-    let slopes = Slopes { program: &programs.surface, precision: 3e-5 };
+    let slopes = Slopes { program: &programs.surface, precision: 3e-5, reach: 0.1 };
     Quilt::new(facets, &slopes, Care::new(3e-5), &Run::default()).unwrap().unwrap()
 }
 
@@ -237,7 +237,7 @@ fn spots_that_small_cells_do_not_show_are_kept_and_told() {
     let programs = compiled(&sheet).unwrap();
     let patch = Patch::flat([DVec3::ZERO, 4.0 * DVec3::X, 4.0 * DVec3::Y].map(|p| p + 0.005 * DVec3::Z));
     let mut quilt = Quilt::of(vec![Spot { patch, off: OFF }], 1e-3);
-    let slopes = Slopes { program: &programs.surface, precision: 1e-3 };
+    let slopes = Slopes { program: &programs.surface, precision: 1e-3, reach: 0.1 };
     mend(&mut quilt, &slopes, 1.0, 1e-3, &Run::default()).unwrap();
     assert!(!quilt.patches.is_empty() && quilt.error >= OFF, "{} patches, {}", quilt.patches.len(), quilt.error);
 }
@@ -254,7 +254,7 @@ fn the_farthest_of_many_spots_are_mended() {
         let at = 4.0 * DVec3::new((n % ROW) as f64, (n / ROW) as f64, 0.0) + DVec3::new(2.0, 2.0, off);
         Spot { patch: Patch::flat([DVec3::ZERO, 0.5 * DVec3::X, 0.5 * DVec3::Y].map(|p| at + p)), off }
     };
-    let slopes = Slopes { program: &programs.surface, precision: 1e-3 };
+    let slopes = Slopes { program: &programs.surface, precision: 1e-3, reach: 0.1 };
     let mut quilt = Quilt::of((0..ROW * ROW).map(spot).collect(), 1e-3);
     mend(&mut quilt, &slopes, 1.0, 1e-3, &Run::default()).unwrap();
     let left: Vec<f64> = quilt.patches.iter().map(|patch| patch.corners[0].z).filter(|off| *off > 5e-3).collect();
@@ -267,7 +267,7 @@ fn the_farthest_of_many_spots_are_mended() {
 fn patches_are_no_more_than_they_may_be() {
     let solid = Solid::superellipsoid([1.0, 0.7, 0.5], 0.4, 1.7).twist(deg(60.0));
     let programs = compiled(&solid).unwrap();
-    let (slopes, run) = (Slopes { program: &programs.surface, precision: 1e-6 }, Run::default());
+    let (slopes, run) = (Slopes { program: &programs.surface, precision: 1e-6, reach: 0.1 }, Run::default());
     let mesh = sharp(&programs.surface, programs.bounds(), 0.2, &run).unwrap();
     let count = mesh.triangles().len();
     let quilt = |most: usize, patience: f64| {
@@ -298,7 +298,7 @@ fn patches_that_are_left_out_count_by_what_is_missed() {
     const TOLERANCE: f64 = 1e-3;
     let cube = Solid::cuboid([10.0; 3]);
     let programs = compiled(&cube).unwrap();
-    let slopes = Slopes { program: &programs.surface, precision: TOLERANCE };
+    let slopes = Slopes { program: &programs.surface, precision: TOLERANCE, reach: 0.1 };
     let top = [DVec3::new(-5.0, -5.0, 5.0), DVec3::new(5.0, -5.0, 5.0), DVec3::new(5.0, 5.0, 5.0)];
     let sliver = |at: DVec3| Spot {
         patch: Patch::flat([DVec3::ZERO, 0.1 * DVec3::X, 0.1 * DVec3::Y].map(|p| at + p)),

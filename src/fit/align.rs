@@ -69,7 +69,8 @@ impl Align<'_> {
         let far = 10.0 * self.size;
         match self.residual {
             Residual::Slope(program) => {
-                let slopes = Slopes { program, precision: 1e-4 * self.size }.at(&at, &quiet)?;
+                let slopes =
+                    Slopes { program, precision: 1e-4 * self.size, reach: CLOSE * self.size }.at(&at, &quiet)?;
                 let of = |(q, slope): (&DVec3, &Slope)| {
                     let length = slope.gradient.length();
                     let d = if length > 1e-9 { slope.value / length } else { slope.value };

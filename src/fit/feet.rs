@@ -4,7 +4,10 @@ use glam::DVec3;
 
 use crate::eval::Program;
 use crate::mesh::{Slope, Slopes};
-use crate::{Cancelled, Run};
+use crate::{Bounds, Cancelled, Run};
+
+/// What is farther off than this part of the points' box is told to be that far or farther.
+const FAR: f64 = 0.1;
 
 /// Newton steps from a point to the surface.
 const STEPS: usize = 4;
@@ -21,7 +24,8 @@ pub(super) struct Foot {
 /// The feet of points: exact for what is near the surface compared with its curvature, and wherever
 /// the value is the true distance, which the first step then goes.
 pub(super) fn feet(program: &Program, points: &[DVec3], run: &Run) -> Result<Vec<Foot>, Cancelled> {
-    let slopes = Slopes { program, precision: 0.0 };
+    let reach = FAR * Bounds::from_points(points.iter().copied()).longest_side();
+    let slopes = Slopes { program, precision: 0.0, reach };
     let mut feet = points.to_vec();
     let mut first: Vec<Slope> = Vec::new();
     let mut last: Vec<Slope> = Vec::new();

@@ -110,7 +110,8 @@ impl Weighted {
         for step in &self.0 {
             let next = match step {
                 Step::Leaf(programs, factor) => {
-                    let mut own = Slopes { program: &programs.surface, precision: 0.0 }.at(points, run)?;
+                    let mut own =
+                        Slopes { program: &programs.surface, precision: 0.0, reach: f64::INFINITY }.at(points, run)?;
                     for slope in &mut own {
                         slope.value *= factor;
                         slope.gradient *= *factor;

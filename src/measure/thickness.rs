@@ -133,7 +133,7 @@ fn thicknesses(mesh: &Mesh, program: &Program, run: &Run) -> Result<Vec<f64>, Ca
     let middle = |triangle: &[u32; 3]| mesh.corners(*triangle).into_iter().sum::<DVec3>() / 3.0;
     let middles: Vec<DVec3> = mesh.triangles().iter().map(middle).collect();
     let precision = PRECISION * mesh.bounds().size().length();
-    let slopes = Slopes { program, precision }.at(&middles, &to_ask)?;
+    let slopes = Slopes { program, precision, reach: precision }.at(&middles, &to_ask)?;
     // Where cells are too large, facets across creases cut off what they stand for: the surface
     // looks another way.
     let cuts: Vec<bool> =

@@ -22,10 +22,19 @@ const SHORT: usize = 2;
 const PART: f64 = 0.02;
 
 /// Values and gradients of `program`, to `precision` where single precision reaches it, else in
-/// double precision.
+/// double precision, of points that are no farther from its surface than `reach`.
+///
+/// ```text
+///     | . . . . |     A program that is narrowed to points within a wall knows the sign there, but
+///     |  . . .  |     not how far it is to either side: neither is among them. So it is narrowed
+///     | . . . . |     to all that is within reach of them. What is farther off is told to be that
+///    reach           far or farther.
+/// ```
+#[derive(Clone, Copy)]
 pub(crate) struct Slopes<'a> {
     pub(crate) program: &'a Program,
     pub(crate) precision: f64,
+    pub(crate) reach: f64,
 }
 
 /// A value and its gradient.
@@ -94,7 +103,7 @@ fn hull(numbers: &[u32], points: &[DVec3]) -> Bounds {
 impl<'a> Slopes<'a> {
     /// As precise as it takes to compare them with a tolerance.
     pub(crate) fn within(program: &'a Program, tolerance: f64) -> Slopes<'a> {
-        Slopes { program, precision: PART * tolerance }
+        Slopes { program, precision: PART * tolerance, reach: tolerance }
     }
 }
 
@@ -139,7 +148,8 @@ impl Slopes<'_> {
                 continue;
             }
             for part in parts.into_iter().filter(|part| !part.is_empty()) {
-                let program = match program.narrow(&hull(&part, points).inflate(1e-6 * bounds.longest_side())) {
+                let margin = self.reach + 1e-6 * bounds.longest_side();
+                let program = match program.narrow(&hull(&part, points).inflate(margin)) {
                     Region::Surface(narrowed) => narrowed,
                     Region::Inside | Region::Outside => program.clone(),
                 };
@@ -207,11 +217,24 @@ mod tests {
         let points: Vec<DVec3> = (0..200)
             .map(|n| DVec3::X * 300.0 + DVec3::new(0.6, 0.0, 0.0) + DVec3::splat(1e-3 * f64::from(n)))
             .collect();
-        let found = Slopes { program, precision }.at(&points, &Run::default()).unwrap();
+        let found = Slopes { program, precision, reach: 1.0 }.at(&points, &Run::default()).unwrap();
         for (p, slope) in points.iter().zip(found) {
             let (value, gradient) = program.gradient(*p);
             let off = (slope.distance() - Slope { value, gradient }.distance()).abs();
             assert!(off < precision, "{off} at {p}, of {precision}");
+        }
+    }
+
+    /// Points within a wall, none of which is at either side of it.
+    #[test]
+    fn within_reach_values_are_right() {
+        let wall = Solid::sphere(2.0) - Solid::sphere(1.0) - Solid::sphere(0.002).translate([1.005, 0.005, 0.0]);
+        let program = &compiled(&wall).unwrap().surface;
+        let place = |n: u32| DVec3::new(1.002 + 2e-4 * f64::from(n % 30), 1.5e-3 * f64::from(n / 30), 0.0);
+        let points: Vec<DVec3> = (0..600).map(place).collect();
+        let slopes = Slopes { program, precision: 1e-6, reach: 0.02 };
+        for (p, slope) in points.iter().zip(slopes.at(&points, &Run::default()).unwrap()) {
+            assert!((slope.value - program.value(*p)).abs() < 1e-5, "{} at {p}", slope.value);
         }
     }
 
@@ -222,7 +245,7 @@ mod tests {
         let program = &compiled(&solid).unwrap().surface;
         let near = |n: u32| DVec3::new(1.0 + f64::EPSILON * f64::from(1 + n % 2), 0.5, 0.0);
         let points: Vec<DVec3> = (0..600).map(near).collect();
-        let found = Slopes { program, precision: 1e-3 }.at(&points, &Run::default()).unwrap();
+        let found = Slopes { program, precision: 1e-3, reach: 0.0 }.at(&points, &Run::default()).unwrap();
         assert!(found.iter().all(|slope| slope.distance() < 1e-3));
     }
 
