@@ -53,8 +53,9 @@ const PARTS: [f64; 3] = [0.25, 0.5, 0.75];
 /// normals that point away from each other.
 const DEEPEST: usize = 32;
 
-/// So many pieces are looked at, no more, so many at a time.
+/// So many pieces are looked at, or so many for each at first, no more, so many at a time.
 const MOST: usize = 1 << 18;
+const OF_EACH: usize = 4;
 const AT_ONCE: usize = 1 << 12;
 
 /// What is moved, and where to.
@@ -124,12 +125,13 @@ impl Offset<'_> {
     pub(super) fn faces(&self, run: &Run) -> Result<Option<Vec<(Patch, f64)>>, Cancelled> {
         let (charts, mut pieces) = self.charts(run)?;
         let mut all = Found::default();
+        let most = MOST.max(OF_EACH * pieces.len());
         let (mut count, mut depth) = (0, 0);
         while !pieces.is_empty() {
             let mut next = Vec::new();
             for part in pieces.chunks(AT_ONCE) {
                 count += part.len();
-                if count > MOST {
+                if count > most {
                     return Ok(None);
                 }
                 let whole = self.look((&charts, part), (&mut next, &mut all), run)?;
@@ -146,7 +148,7 @@ impl Offset<'_> {
                 all.known = Some(Patches::new(&wide, &Run { progress: None, ..run.clone() })?);
             }
             pieces = next;
-            run.report(count as f64 / MOST as f64);
+            run.report(count as f64 / most as f64);
         }
         Ok(Some(all.patches))
     }
