@@ -100,6 +100,17 @@ impl Piece {
     }
 }
 
+/// The slopes in the corners of a piece, of all in rows and one in the middle.
+fn corners_of(slopes: &[Slope]) -> [Slope; 3] {
+    let last = slopes.len() - 2;
+    [slopes[last], slopes[sides_of(slopes.len())], slopes[0]]
+}
+
+/// So many sides are between places along a side, of so many places in rows and the middle.
+fn sides_of(count: usize) -> usize {
+    ((f64::sqrt(8.0 * count as f64 - 7.0) - 3.0) / 2.0).round() as usize
+}
+
 /// What is found, and what is left for later.
 #[derive(Default)]
 struct Found {
@@ -209,7 +220,7 @@ impl Offset<'_> {
                     None if self.has_narrow(chart(piece), piece, own, |_| true) => found.narrow.push(*piece),
                     _ => {}
                 }
-            } else if size > self.cell || !self.trim(chart(piece), piece, next) {
+            } else if size > self.cell || !self.trim(chart(piece), piece, corners_of(&slopes[places]), next) {
                 if size > SMALL * self.tolerance {
                     next.extend(piece.quarters());
                 } else if 2 * on > count {
@@ -269,8 +280,7 @@ impl Offset<'_> {
         let [a, b, c] = piece.corners.map(|at| chart.at(at));
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        // So many places are between as many sides, and the middle.
-        let along = (f64::sqrt(8.0 * points.len() as f64 - 7.0) - 3.0) / 2.0;
+        let along = sides_of(points.len()) as f64;
         let leads = |(from, slope): (&DVec3, &Slope)| {
             let (mut p, mut slope) = (*from, *slope);
             for _ in 0..STEPS {
@@ -301,12 +311,43 @@ impl Offset<'_> {
         Patch { corners, displacements }
     }
 
+    /// The last place at the level on the way from one that is to one that is not, whose slope is
+    /// known: beyond the end the value falls off evenly.
+    fn end(&self, chart: &Chart, [mut inner, mut outer]: [DVec2; 2], slope: Slope) -> DVec2 {
+        let (mut slope, mut was_aimed) = (Some(slope), false);
+        for _ in 0..DEEPEST {
+            let way = chart.at(inner) - chart.at(outer);
+            let width = way.length();
+            if width <= RIM * self.tolerance {
+                break;
+            }
+            let aimed = slope.take().map(|Slope { value, gradient }| {
+                let falls = -value.signum() * gradient.dot(way);
+                let over = value.abs() - ON * (self.tolerance + self.grain);
+                over / falls + 0.5 * RIM * self.tolerance / width
+            });
+            let aimed = aimed.filter(|part| *part > 0.0 && *part < 1.0);
+            // Once a place is at the level the next one is asked that is not to be.
+            let part = aimed.unwrap_or(if was_aimed { 1.0 - RIM * self.tolerance / width } else { 0.5 });
+            let middle = outer.lerp(inner, part);
+            let (value, gradient) = self.level.program.gradient(chart.at(middle));
+            let is_on = self.is_on(value);
+            if is_on {
+                inner = middle;
+            } else {
+                (outer, slope) = (middle, aimed.is_none().then_some(Slope { value, gradient }));
+            }
+            was_aimed = is_on && aimed.is_some();
+        }
+        inner
+    }
+
     /// Trims a piece to what is at the level, if that ends along a line that is all but straight:
     /// gives whether it does.
-    fn trim(&self, chart: &Chart, piece: &Piece, next: &mut Vec<Piece>) -> bool {
+    fn trim(&self, chart: &Chart, piece: &Piece, slopes: [Slope; 3], next: &mut Vec<Piece>) -> bool {
         let is_on = |at: DVec2| self.is_on(self.level.program.value(chart.at(at)));
         let apart = |from: DVec2, to: DVec2| chart.at(from).distance(chart.at(to));
-        let on = piece.corners.map(is_on);
+        let on = slopes.map(|slope| self.is_on(slope.value));
         let count = on.iter().filter(|own| **own).count();
         if count == 0 || count == 3 {
             return false;
@@ -314,17 +355,9 @@ impl Offset<'_> {
         // The corner that is alone on its side of the line.
         let alone = (0..3).find(|k| on[*k] == (count == 1)).unwrap_or(0);
         let [a, b, c] = [0, 1, 2].map(|k| piece.corners[(alone + k) % 3]);
-        let end = |mut inner: DVec2, mut outer: DVec2| {
-            for _ in 0..DEEPEST {
-                if apart(inner, outer) <= RIM * self.tolerance {
-                    break;
-                }
-                let middle = 0.5 * (inner + outer);
-                if is_on(middle) { inner = middle } else { outer = middle }
-            }
-            inner
-        };
-        let [ab, ac] = if count == 1 { [end(a, b), end(a, c)] } else { [end(b, a), end(c, a)] };
+        let [of_a, of_b, of_c] = [0, 1, 2].map(|k| slopes[(alone + k) % 3]);
+        let end = |inner: DVec2, outer: DVec2, slope: Slope| self.end(chart, [inner, outer], slope);
+        let [ab, ac] = if count == 1 { [end(a, b, of_b), end(a, c, of_c)] } else { [end(b, a, of_a), end(c, a, of_a)] };
         // What is at the level along a side alone is a neighbour's.
         let width = if count == 1 { apart(a, ab).min(apart(a, ac)) } else { apart(b, ab).max(apart(c, ac)) };
         if width < self.tolerance {
