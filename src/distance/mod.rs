@@ -36,6 +36,7 @@ mod seam;
 mod sheets;
 mod strips;
 mod surface;
+mod trim;
 
 #[cfg(test)]
 mod tests;

@@ -17,6 +17,7 @@ use glam::{DVec2, DVec3};
 
 use super::chart::Chart;
 use super::quilt::{BETWEEN, PROBES};
+use super::trim::Partial;
 use crate::mesh::{Slope, Slopes};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::{Patch, Patches};
@@ -39,19 +40,11 @@ const STEPS: usize = 3;
 const REACH: f64 = 1.5;
 
 /// Pieces of so many tolerances are divided no more.
-const SMALL: f64 = 2.0;
-
-/// Where a face ends is found to this part of the tolerance.
-const RIM: f64 = 0.2;
-
-/// A line that a face ends along is seen to be straight so many tolerances beside it, at these
-/// parts of it.
-const BESIDE: f64 = 0.6;
-const PARTS: [f64; 3] = [0.25, 0.5, 0.75];
+pub(super) const SMALL: f64 = 2.0;
 
 /// What is halved so often is as small as numbers tell apart, but where a chart has a jump: between
 /// normals that point away from each other.
-const DEEPEST: usize = 32;
+pub(super) const DEEPEST: usize = 32;
 
 /// So many pieces are looked at, or so many for each at first, no more, so many at a time.
 const MOST: usize = 1 << 18;
@@ -92,18 +85,12 @@ impl Piece {
         a * self.corners[0] + b * self.corners[1] + c * self.corners[2]
     }
 
-    fn quarters(&self) -> [Piece; 4] {
+    pub(super) fn quarters(&self) -> [Piece; 4] {
         let [a, b, c] = self.corners;
         let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
         let parts = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
         parts.map(|corners| Piece { corners, is_trimmed: false, ..*self })
     }
-}
-
-/// The slopes in the corners of a piece, of all in rows and one in the middle.
-fn corners_of(slopes: &[Slope]) -> [Slope; 3] {
-    let last = slopes.len() - 2;
-    [slopes[last], slopes[sides_of(slopes.len())], slopes[0]]
 }
 
 /// So many sides are between places along a side, of so many places in rows and the middle.
@@ -113,9 +100,9 @@ fn sides_of(count: usize) -> usize {
 
 /// What is found, and what is left for later.
 #[derive(Default)]
-struct Found {
+pub(super) struct Found {
     /// Each with how far it is off.
-    patches: Vec<(Patch, f64)>,
+    pub(super) patches: Vec<(Patch, f64)>,
     /// What is too narrow for places to show.
     narrow: Vec<Piece>,
     /// What was found before it was looked for.
@@ -191,7 +178,7 @@ impl Offset<'_> {
             ends.push(points.len());
         }
         let slopes = self.level.at(&points, run)?;
-        let (mut whole, mut start) = (Vec::new(), 0);
+        let (mut whole, mut partial, mut start) = (Vec::new(), Vec::new(), 0);
         for ((piece, size), end) in pieces.iter().zip(sizes).zip(ends) {
             let places = start..end;
             start = end;
@@ -220,14 +207,14 @@ impl Offset<'_> {
                     None if self.has_narrow(chart(piece), piece, own, |_| true) => found.narrow.push(*piece),
                     _ => {}
                 }
-            } else if size > self.cell || !self.trim(chart(piece), piece, corners_of(&slopes[places]), next) {
-                if size > SMALL * self.tolerance {
-                    next.extend(piece.quarters());
-                } else if 2 * on > count {
-                    found.patches.push((self.patch(chart(piece), piece), size));
-                }
+            } else if size > self.cell {
+                next.extend(piece.quarters());
+            } else {
+                let slopes = [places.end - 2, places.start + sides_of(count), places.start].map(|at| slopes[at]);
+                partial.push(Partial { piece: *piece, size, slopes, mostly: 2 * on > count });
             }
         }
+        self.trim((charts, &partial), (next, found), run)?;
         Ok(whole)
     }
 
@@ -256,15 +243,20 @@ impl Offset<'_> {
         points.iter().any(|p| self.near.contains(*p))
     }
 
-    fn is_on(&self, value: f64) -> bool {
-        value.abs() <= ON * (self.tolerance + self.grain)
+    pub(super) fn is_on(&self, value: f64) -> bool {
+        value.abs() <= self.slightest()
+    }
+
+    /// What is less off than that is at the level.
+    pub(super) fn slightest(&self) -> f64 {
+        ON * (self.tolerance + self.grain)
     }
 
     /// Whether a piece is beside the level, as its patch is beside the surface.
     fn is_level(&self, slopes: &[Slope], size: f64) -> bool {
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         slopes.iter().for_each(|slope| (least, most) = (least.min(slope.value), most.max(slope.value)));
-        let on = ON * (self.tolerance + self.grain);
+        let on = self.slightest();
         most - least <= on.min(SLANT * size) && most.max(-least) <= on + self.slack
     }
 
@@ -301,7 +293,7 @@ impl Offset<'_> {
     }
 
     /// The patch of a piece.
-    fn patch(&self, chart: &Chart, piece: &Piece) -> Patch {
+    pub(super) fn patch(&self, chart: &Chart, piece: &Piece) -> Patch {
         let corners = piece.corners.map(|at| chart.at(at));
         let displacements = [0, 1, 2].map(|k| {
             let middle = 0.5 * (piece.corners[k] + piece.corners[(k + 1) % 3]);
@@ -309,75 +301,6 @@ impl Offset<'_> {
             if off.length() < 1e-2 * self.tolerance { DVec3::ZERO } else { off }
         });
         Patch { corners, displacements }
-    }
-
-    /// The last place at the level on the way from one that is to one that is not, whose slope is
-    /// known: beyond the end the value falls off evenly.
-    fn end(&self, chart: &Chart, [mut inner, mut outer]: [DVec2; 2], slope: Slope) -> DVec2 {
-        let (mut slope, mut was_aimed) = (Some(slope), false);
-        for _ in 0..DEEPEST {
-            let way = chart.at(inner) - chart.at(outer);
-            let width = way.length();
-            if width <= RIM * self.tolerance {
-                break;
-            }
-            let aimed = slope.take().map(|Slope { value, gradient }| {
-                let falls = -value.signum() * gradient.dot(way);
-                let over = value.abs() - ON * (self.tolerance + self.grain);
-                over / falls + 0.5 * RIM * self.tolerance / width
-            });
-            let aimed = aimed.filter(|part| *part > 0.0 && *part < 1.0);
-            // Once a place is at the level the next one is asked that is not to be.
-            let part = aimed.unwrap_or(if was_aimed { 1.0 - RIM * self.tolerance / width } else { 0.5 });
-            let middle = outer.lerp(inner, part);
-            let (value, gradient) = self.level.program.gradient(chart.at(middle));
-            let is_on = self.is_on(value);
-            if is_on {
-                inner = middle;
-            } else {
-                (outer, slope) = (middle, aimed.is_none().then_some(Slope { value, gradient }));
-            }
-            was_aimed = is_on && aimed.is_some();
-        }
-        inner
-    }
-
-    /// Trims a piece to what is at the level, if that ends along a line that is all but straight:
-    /// gives whether it does.
-    fn trim(&self, chart: &Chart, piece: &Piece, slopes: [Slope; 3], next: &mut Vec<Piece>) -> bool {
-        let is_on = |at: DVec2| self.is_on(self.level.program.value(chart.at(at)));
-        let apart = |from: DVec2, to: DVec2| chart.at(from).distance(chart.at(to));
-        let on = slopes.map(|slope| self.is_on(slope.value));
-        let count = on.iter().filter(|own| **own).count();
-        if count == 0 || count == 3 {
-            return false;
-        }
-        // The corner that is alone on its side of the line.
-        let alone = (0..3).find(|k| on[*k] == (count == 1)).unwrap_or(0);
-        let [a, b, c] = [0, 1, 2].map(|k| piece.corners[(alone + k) % 3]);
-        let [of_a, of_b, of_c] = [0, 1, 2].map(|k| slopes[(alone + k) % 3]);
-        let end = |inner: DVec2, outer: DVec2, slope: Slope| self.end(chart, [inner, outer], slope);
-        let [ab, ac] = if count == 1 { [end(a, b, of_b), end(a, c, of_c)] } else { [end(b, a, of_a), end(c, a, of_a)] };
-        // What is at the level along a side alone is a neighbour's.
-        let width = if count == 1 { apart(a, ab).min(apart(a, ac)) } else { apart(b, ab).max(apart(c, ac)) };
-        if width < self.tolerance {
-            return true;
-        }
-        let beside = |part: f64| {
-            let middle = ab.lerp(ac, part);
-            let step = (BESIDE * self.tolerance / apart(middle, a).max(self.tolerance)).min(0.5) * (a - middle);
-            [is_on(middle + step), is_on(middle - step)]
-        };
-        let is_short = apart(ab, ac) <= SMALL * self.tolerance;
-        if !is_short && PARTS.iter().any(|part| beside(*part) != [count == 1, count == 2]) {
-            return false;
-        }
-        let part = |corners: [DVec2; 3]| Piece { corners, is_trimmed: true, ..*piece };
-        match count {
-            1 => next.push(part([a, ab, ac])),
-            _ => next.extend([part([ab, b, c]), part([ab, c, ac])]),
-        }
-        true
     }
 }
 
