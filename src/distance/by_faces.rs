@@ -47,7 +47,7 @@ pub(super) fn by_faces(
     let Some(faces) = offset.faces(to_move)? else { return Ok(None) };
     let mut quilt = Quilt::of(Vec::new(), tolerance);
     quilt.add_all(faces.into_iter());
-    if quilt.error > GROSS * tolerance {
+    if quilt.error > GROSS * tolerance + offset.slack {
         return Ok(None);
     }
     let patches = Patches::new(&quilt.patches, to_join)?;

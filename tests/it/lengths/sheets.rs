@@ -54,6 +54,11 @@ fn shells_that_are_cut_open_are_known_as_well() -> Outcome {
         ("a box", turned(Solid::cuboid([12.0, 9.0, 7.0]))),
         ("a cylinder", turned(Solid::cylinder(5.0, 12.0))),
         ("a torus", turned(Solid::torus(8.0, 4.0))),
+        ("an ellipsoid and a wedge", {
+            let wedge = at(Solid::wedge([9.452, 10.207, 7.615]), [3.749, -0.764, -2.058]);
+            let shell = (Solid::ellipsoid([7.657, 5.749, 5.98]) | wedge).shell(0.9482);
+            shell.rotate_x(deg(-66.06)).rotate_y(deg(-1.4)).rounded(0.4741)
+        }),
         ("a box and a cylinder", open(Solid::cuboid([12.0, 9.0, 7.0]) | Solid::cylinder(4.0, 16.0)).rounded(0.5)),
     ] {
         let accuracy = rounded.accuracy()?;
