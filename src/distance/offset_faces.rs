@@ -103,7 +103,7 @@ fn sides_of(count: usize) -> usize {
 pub(super) struct Found {
     /// Each with how far it is off.
     pub(super) patches: Vec<(Patch, f64)>,
-    /// What is too narrow for places to show.
+    /// What is too narrow for places to show, or beside the level.
     narrow: Vec<Piece>,
     /// What was found before it was looked for.
     known: Option<Patches>,
@@ -184,15 +184,25 @@ impl Offset<'_> {
             start = end;
             let count = places.len();
             let on = slopes[places.clone()].iter().filter(|slope| self.is_on(slope.value)).count();
-            let is_beside = on < count && self.is_level(&slopes[places.clone()], size);
-            let is_whole = count > 0 && (on == count || is_beside);
-            if piece.is_trimmed || is_whole && self.is_near(&points[places.clone()]) {
-                let slack = if is_beside { BETWEEN * self.slack } else { 0.0 };
-                whole.push(Whole { piece: *piece, size, slack, patch: self.patch(chart(piece), piece) });
+            let patch = || self.patch(chart(piece), piece);
+            if piece.is_trimmed {
+                whole.push(Whole { piece: *piece, size, slack: 0.0, patch: patch() });
             } else if count == 0 {
                 next.extend(piece.quarters());
             } else if !self.is_near(&points[places.clone()]) {
                 // Nobody asks for it.
+            } else if on == count {
+                whole.push(Whole { piece: *piece, size, slack: 0.0, patch: patch() });
+            } else if self.is_level(&slopes[places.clone()], size) {
+                // It is part of the surface where nothing else is.
+                let near = self.slack + SMALL * self.tolerance;
+                match &found.known {
+                    None => found.narrow.push(*piece),
+                    Some(known) if points[places].iter().all(|p| known.is_within(*p, near)) => {}
+                    Some(_) => {
+                        whole.push(Whole { piece: *piece, size, slack: BETWEEN * self.slack, patch: patch() });
+                    }
+                }
             } else if on == 0 {
                 let own = (&points[places.clone()], &slopes[places]);
                 match &found.known {
