@@ -296,8 +296,8 @@
 //! # Accuracy
 //!
 //! A measured surface is right to the power of two at or below a thousandth of the length that is
-//! asked for, so that lengths of about one size share one surface. By itself it is never measured
-//! more finely than to a millionth of the solid's size, or of how far the solid reaches from the
+//! asked for, of chamfers of four legs, so that lengths of about one size share one surface. By
+//! itself it is never measured more finely than to a millionth of the solid's size, or of how far the solid reaches from the
 //! origin. Equal solids share their surfaces. Along creases that are curved,
 //! where curvature jumps, and where ribs come to be as thin as cells, single points may be farther
 //! off. [`Solid::accuracy`](crate::Solid::accuracy) says what was reached, and

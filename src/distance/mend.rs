@@ -21,9 +21,8 @@ use crate::{Bounds, Cancelled, Mesh, RFunction, Run, Solid};
 use rvachev_field::{Patch, Patches};
 use rvachev_num::{jobs, order};
 
-/// So many boxes are meshed, those of the farthest spots, and boxes in these.
+/// So many boxes are meshed, those of the farthest spots. Boxes in these share as many.
 const BOXES: usize = 512;
-const DEEPEST: u32 = 2;
 
 /// Cells along a box, and how often their patches are split.
 const CELLS: f64 = 8.0;
@@ -46,12 +45,12 @@ const MARGIN: f64 = 0.3;
 /// beyond them.
 const PART: f64 = 0.6;
 
-/// A mesh that patches were made of: the size of its cells, how often its spots may be meshed anew,
-/// and how many patches there may be then.
+/// A mesh that patches were made of: the size of its cells, how many boxes about its spots may be
+/// meshed anew, and how many patches there may be then.
 #[derive(Clone, Copy)]
 struct Cells {
     size: f64,
-    depth: u32,
+    boxes: usize,
     most: usize,
 }
 
@@ -64,22 +63,24 @@ pub(super) fn mend(
     tolerance: f64,
     run: &Run,
 ) -> Result<(), Cancelled> {
-    mend_of(Cells { size: cell, depth: DEEPEST, most: MOST }, quilt, slopes, tolerance, run)?;
+    mend_of(Cells { size: cell, boxes: BOXES, most: MOST }, quilt, slopes, tolerance, run)?;
     quilt.leave(slopes, run)
 }
 
 fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<(), Cancelled> {
-    let Cells { size, depth, most } = cells;
+    let Cells { size, boxes, most } = cells;
     let spots = std::mem::take(&mut quilt.spots);
     let worst = |numbers: &[usize]| numbers.iter().map(|n| spots[*n].off).fold(0.0, f64::max);
     let in_parts = |group: Group| match worst(&group.1) > GROSS * tolerance {
         true => parted(group, &spots, size, tolerance),
         false => vec![group],
     };
-    let found = if depth == 0 { Vec::new() } else { groups(&spots, tolerance, run)? };
+    let found = if boxes == 0 { Vec::new() } else { groups(&spots, tolerance, run)? };
     let mut groups: Vec<Group> = found.into_iter().flat_map(in_parts).collect();
     order::falling(&mut groups, |(_, numbers)| worst(numbers));
-    groups.truncate(BOXES);
+    groups.truncate(boxes);
+    // What is within a few tolerances may stay as it is.
+    let boxes = boxes / groups.iter().filter(|(_, numbers)| worst(numbers) > GROSS * tolerance).count().max(1);
     let mut left = vec![true; spots.len()];
     let mended = |(bounds, numbers): &Group, most: usize| {
         run.check()?;
@@ -90,7 +91,7 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
         }
         let care = Care { depth: SPLITS, most, ..Care::new(tolerance) };
         let Some(mut part) = anew(slopes, bounds, care, run)? else { return Ok(None) };
-        mend_of(Cells { size: cell, depth: depth - 1, most }, &mut part, slopes, tolerance, run)?;
+        mend_of(Cells { size: cell, boxes, most }, &mut part, slopes, tolerance, run)?;
         let own: Vec<&Spot> = numbers.iter().map(|n| &spots[*n]).collect();
         part.keep_near(&own);
         Ok(covers(&part, &own, slopes, NEAR * cell, run)?.then_some(part))
@@ -143,7 +144,7 @@ pub(super) fn complete(
         let care = Care { depth: SPLITS, most, ..Care::new(tolerance) };
         let Some(mut part) = anew(slopes, &bounds, care, run)? else { return Ok(None) };
         let size = bounds.longest_side() / CELLS;
-        mend_of(Cells { size, depth: DEEPEST, most }, &mut part, slopes, tolerance, run)?;
+        mend_of(Cells { size, boxes: BOXES, most }, &mut part, slopes, tolerance, run)?;
         let own: Vec<&Spot> = spots.iter().collect();
         Ok(covers(&part, &own, slopes, NEAR * size, run)?.then_some(part))
     };

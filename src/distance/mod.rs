@@ -81,7 +81,7 @@ pub(crate) fn surface_with(solid: &Solid, run: &Run) -> Result<Arc<Surface>, Com
     }
     // Feet are refined on the field itself: a ten thousandth of the solid does.
     let length = 1e-1 * programs.bounds().longest_side();
-    let wanted = Wanted { length, tolerance: None, region: &Bounds::ALL, by_patches: true };
+    let wanted = Wanted { by_patches: true, ..Wanted::of(length, None, &Bounds::ALL) };
     surface(solid, &programs, &wanted, &FromMeshes, run)
 }
 

@@ -327,7 +327,7 @@ mod tests {
     fn faces(solid: &Solid, by: f64, tolerance: f64) -> Vec<(Patch, f64)> {
         let run = Run::default();
         let programs = compiled_with(solid, &run).unwrap();
-        let wanted = Wanted { length: by.abs(), tolerance: None, region: &Bounds::ALL, by_patches: false };
+        let wanted = Wanted::of(by.abs(), None, &Bounds::ALL);
         let surface = surface(solid, &programs, &wanted, &FromMeshes, &run).unwrap();
         let moved = compiled_with(&solid.offset(by), &run).unwrap();
         let offset = Offset {

@@ -229,7 +229,7 @@ impl DistanceSource for FromMeshes {
         let least = match wanted.tolerance {
             Some(tolerance) => (tolerance - own).max(FINEST * far),
             // Lengths that are alike have one surface.
-            None => (DEVIATION * wanted.length).log2().floor().exp2().max(SMALL * far),
+            None => (DEVIATION * wanted.asked).log2().floor().exp2().max(SMALL * far),
         };
         least.max(programs.accuracy.grain())
     }

@@ -31,7 +31,7 @@ fn holed() -> Solid {
 
 /// The patches that a length of 1 is measured from.
 fn few_patches(solid: &Solid) -> Arc<Patches> {
-    let wanted = Wanted { length: 1.0, tolerance: None, region: &Bounds::ALL, by_patches: false };
+    let wanted = Wanted::of(1.0, None, &Bounds::ALL);
     surface(solid, &compiled(solid).unwrap(), &wanted, &FromMeshes, &Run::default()).unwrap().patches.clone()
 }
 
@@ -321,7 +321,7 @@ fn patches_that_are_left_out_count_by_what_is_missed() {
 #[test]
 fn equal_solids_have_one_surface() {
     let surface = |solid: &Solid, length: f64, tolerance: Option<f64>| {
-        let wanted = Wanted { length, tolerance, region: &Bounds::ALL, by_patches: false };
+        let wanted = Wanted::of(length, tolerance, &Bounds::ALL);
         surface(solid, &compiled(solid).unwrap(), &wanted, &FromMeshes, &Run::default()).unwrap()
     };
     // Of no other test.

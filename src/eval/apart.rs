@@ -98,7 +98,7 @@ pub(super) fn measure(
     let tolerance = solid.node().tolerance();
     let found = match solid.node() {
         Node::Length { ball: Some(ball), length, .. } => {
-            let wanted = Wanted { length: length.amount(), tolerance, region: &Bounds::ALL, by_patches: false };
+            let wanted = Wanted::of(length.amount(), tolerance, &Bounds::ALL);
             let (field, accuracy) = distance(ball, &wanted, source, run)?;
             // Of an opening nothing is left if there is no room for the ball, of a closing if
             // there was nothing to close.
@@ -112,7 +112,8 @@ pub(super) fn measure(
                 true => (sign(&programs), None, Accuracy::default()),
                 false => {
                     let region = about.map_or(Bounds::ALL, |blend| region_of_ball(operand, blend, &programs.bounds()));
-                    let wanted = Wanted { length: inwards.abs(), tolerance, region: &region, by_patches: false };
+                    let asked = about.map_or(inwards.abs(), asked);
+                    let wanted = Wanted { asked, ..Wanted::of(inwards.abs(), tolerance, &region) };
                     let side = if inwards > 0.0 { Side::Inside } else { Side::Outside };
                     let Found { field, parts, accuracy } = sided((operand, side), &wanted, exact, source, run)?;
                     (field, parts, accuracy)
@@ -132,7 +133,7 @@ pub(super) fn measure(
         Node::Blend { operation, blend, operands, ball: Some(ball), .. } => {
             let near = Near::of(*operation, *blend, operands);
             let region = near.region();
-            let wanted = Wanted { length: near.radius, tolerance, region: &region, by_patches: false };
+            let wanted = Wanted { asked: asked(*blend), ..Wanted::of(near.radius, tolerance, &region) };
             // The ball's distance, and those of the operands.
             let count = if near.fades { 1 + operands.len() } else { 1 };
             let stage = |number: usize| run.stage(number as f64 / count as f64, (number + 1) as f64 / count as f64);
@@ -196,6 +197,18 @@ pub(super) fn distance(
     let field = SurfaceDistance::new(patches.clone(), sign(&programs), accuracy.error, *flat, programs.bounds());
     let field = field.within(wanted.near());
     Ok((Arc::new(field), accuracy.plus(programs.accuracy)))
+}
+
+/// Chamfers are right to a thousandth of so many legs: on round operands legs are no more exact.
+const ASKED_LEGS: f64 = 4.0;
+
+/// The length that a blend asks for.
+fn asked(blend: Blend) -> f64 {
+    match blend {
+        Blend::Fillet { radius } => radius,
+        Blend::Chamfer { leg } => ASKED_LEGS * leg,
+        _ => 0.0,
+    }
 }
 
 /// What was measured of a node.

@@ -278,6 +278,10 @@ impl AnyField for Fill {
         Some(if self.ball.sign < 0.0 { found.into_iter().map(Layer::turned).collect() } else { found })
     }
 
+    fn slope_bound(&self) -> Option<f64> {
+        Some(self.steepness())
+    }
+
     fn steepest(&self, _zone: &Zone) -> f64 {
         self.steepness()
     }

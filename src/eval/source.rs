@@ -37,6 +37,8 @@ pub(crate) trait DistanceSource: Send + Sync {
 pub(crate) struct Wanted<'a> {
     /// About how long the lengths are that are measured from it.
     pub(crate) length: f64,
+    /// That which is asked for: lengths are right to a thousandth of it.
+    pub(crate) asked: f64,
     /// How far they may be off in all, if the user has said so.
     pub(crate) tolerance: Option<f64>,
     /// Where they are asked for.
@@ -58,7 +60,12 @@ pub(super) fn reach(length: f64, size: f64) -> f64 {
     beside.max(REACH * length)
 }
 
-impl Wanted<'_> {
+impl<'a> Wanted<'a> {
+    /// What a length is measured from.
+    pub(crate) fn of(length: f64, tolerance: Option<f64>, region: &'a Bounds) -> Wanted<'a> {
+        Wanted { length, asked: length, tolerance, region, by_patches: false }
+    }
+
     /// How far beyond the region a surface is found, of a solid of a size. What is cut out of
     /// something large becomes no more than twice as large by it.
     pub(crate) fn reach(&self, size: f64) -> f64 {

@@ -9,23 +9,27 @@ use crate::Bounds;
 use rvachev_field::Rule;
 
 impl Program {
-    /// Whether the values of its leaves change by at most 1 per length unit where they are not
-    /// deformed, and joins leave it at that.
+    /// By how much the values of its leaves change per length unit at most where they are not
+    /// deformed, if that is known of all, and joins leave it at that.
+    fn slope_of_leaves(&self) -> Option<f64> {
+        let of_node = |node: &Node| match &node.kind {
+            Kind::Leaf(leaf) => self.instance(*leaf).field.slope_bound(),
+            Kind::Join { rule, .. } => matches!(rule, Rule::MinMax | Rule::Smooth(_)).then_some(0.0),
+            Kind::Shift(_) => Some(0.0),
+        };
+        self.nodes.iter().try_fold(0.0, |most: f64, node| Some(most.max(of_node(node)?)))
+    }
+
+    /// Whether it is known by how much the values of its leaves change where they are not deformed,
+    /// and joins leave it at that.
     pub(crate) fn has_gentle_leaves(&self) -> bool {
-        self.nodes.iter().all(|node| match &node.kind {
-            Kind::Leaf(leaf) => {
-                let field = &self.instance(*leaf).field;
-                field.convex() || field.exact()
-            }
-            Kind::Join { rule, .. } => matches!(rule, Rule::MinMax | Rule::Smooth(_)),
-            Kind::Shift(_) => true,
-        })
+        self.slope_of_leaves().is_some()
     }
 
     /// Whether the value changes by at most 1 per length unit: that of its leaves does, and none is
     /// deformed.
     pub(crate) fn is_gentle(&self) -> bool {
-        self.has_gentle_leaves() && self.is_unbent()
+        self.slope_of_leaves().is_some_and(|slope| slope <= 1.0) && self.is_unbent()
     }
 
     fn is_unbent(&self) -> bool {
@@ -50,10 +54,10 @@ impl Program {
     /// By how much the value of gentle leaves changes per length unit in a box at most: by more
     /// than 1 where they are deformed. Of others it is not told.
     pub(crate) fn slope_within(&self, region: &Bounds) -> f64 {
-        match (self.has_gentle_leaves(), self.is_unbent()) {
-            (true, true) => 1.0,
-            (true, false) => self.steepest(region),
-            (false, _) => f64::INFINITY,
+        match self.slope_of_leaves() {
+            Some(slope) if self.is_unbent() => slope,
+            Some(_) => self.steepest(region),
+            None => f64::INFINITY,
         }
     }
 

@@ -95,6 +95,7 @@ pub(super) struct Tiles {
     pub(super) sign: Arc<dyn AnyField>,
     pub(super) bounds: Bounds,
     pub(super) length: f64,
+    asked: f64,
     tolerance: Option<f64>,
     pub(super) source: &'static dyn DistanceSource,
     period: Option<DMat3>,
@@ -115,11 +116,11 @@ impl Tiles {
         wanted: &Wanted<'_>,
         source: &'static dyn DistanceSource,
     ) -> Tiles {
-        let Wanted { length, tolerance, .. } = *wanted;
+        let Wanted { length, asked, tolerance, .. } = *wanted;
         let (sign, bounds) = (sign(programs), programs.bounds());
         let period = programs.surface.period();
         let tiling = Tiling::new(SIDE * length, period);
-        Tiles { solid, sign, bounds, length, tolerance, source, period, tiling, made: RwLock::default() }
+        Tiles { solid, sign, bounds, length, asked, tolerance, source, period, tiling, made: RwLock::default() }
     }
 
     /// How far the surface of any tile may be off. No tile has been looked at, and no error found.
@@ -130,7 +131,7 @@ impl Tiles {
     }
 
     fn wanted<'a>(&self, region: &'a Bounds) -> Wanted<'a> {
-        Wanted { length: self.length, tolerance: self.tolerance, region, by_patches: false }
+        Wanted { asked: self.asked, ..Wanted::of(self.length, self.tolerance, region) }
     }
 
     /// The tile with a number.

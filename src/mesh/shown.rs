@@ -12,7 +12,7 @@ use super::error::MeshingError;
 use super::extract::Sampler;
 use super::lattice::{CellSize, Lattice};
 use super::resolve::{Among, Unresolved, unresolved_cells};
-use super::sampler::{BESIDE, Scratch, SolidSampler};
+use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
 use super::subject::Subject;
 use crate::eval::Program;
@@ -49,6 +49,10 @@ pub(crate) struct Hidden {
 pub(crate) fn reached(cell: &Bounds) -> Bounds {
     cell.inflate(0.01 * cell.longest_side())
 }
+
+/// How far an eighth of a cell reaches from its own node, and from those that are one, two and three
+/// edges from that, in cells, with room for rounding.
+const FAR: [f64; 4] = [0.867, 1.225, 1.501, 1.733];
 
 /// What may be beside cells that are looked for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -119,7 +123,8 @@ impl Subject<'_> {
     /// known how much they change as points move, those at the nodes tell where to look, and lead
     /// there.
     fn crossed(&self, blocks: &Blocks, lattice: &Lattice, beside: Beside, run: &Run) -> Result<Vec<Hidden>, Cancelled> {
-        let sampler = SolidSampler::new(lattice, blocks, self.bounds, BESIDE);
+        let slope = self.program.slope_within(&self.bounds);
+        let sampler = SolidSampler::new(lattice, blocks, self.bounds, FAR[2] * slope.max(1.0));
         // One that is alone is enough to know that there are some.
         let is_enough = AtomicBool::new(false);
         let of_block = |scratch: &mut Scratch, number: usize| {
@@ -129,8 +134,7 @@ impl Subject<'_> {
                 return Ok(Vec::new());
             }
             let slope = blocks.programs.of(number).slope_within(&lattice.region(block, BLOCK));
-            // No point of a cell is farther from its nearest node than half of its diagonal.
-            let near = 0.867 * lattice.step() * slope;
+            let most = slope * lattice.step();
             let mut values = [0.0; NODES];
             scratch.forget();
             sampler.nodes(scratch, number, block, &mut values);
@@ -138,12 +142,12 @@ impl Subject<'_> {
             let mut found = Vec::new();
             for [x, y, z] in (0..BLOCK.pow(3)).map(|n| [n % BLOCK, n / BLOCK % BLOCK, n / (BLOCK * BLOCK)]) {
                 let node = |n: usize| (x + (n & 1)) + SIDE * (y + (n >> 1 & 1)) + SIDE * SIDE * (z + (n >> 2));
-                let is_near = (0..8).any(|n| f64::from(values[node(n)].abs()) <= near);
+                let is_clear = || is_clear(std::array::from_fn(|n| f64::from(values[node(n)].abs()) / most));
                 let is_mixed = || match beside {
                     Beside::Nothing => is_mixed_about(&signs, [x, y, z]),
                     Beside::All => !matches!(signs.case([x, y, z]), 0 | 255),
                 };
-                if !is_near || is_mixed() {
+                if is_mixed() || is_clear() {
                     continue;
                 }
                 let cell = [0, 1, 2].map(|axis| block[axis] + [x, y, z][axis] as u32);
@@ -251,9 +255,32 @@ fn is_mixed_about(signs: &Signs, cell: [usize; 3]) -> bool {
     (0..27).any(mixed)
 }
 
+/// Whether no point of a cell can be on the surface, given how far its nodes are at least, in cells:
+/// each eighth of it is nearer to some node than that.
+fn is_clear(nodes: [f64; 8]) -> bool {
+    (0..8u32).all(|eighth| (0..8u32).any(|n| nodes[n as usize] > FAR[(eighth ^ n).count_ones() as usize]))
+}
+
 /// The nodes of so many cells along each side of a box.
 fn nodes(bounds: &Bounds, count: u32) -> impl Iterator<Item = DVec3> {
     let (min, step, side) = (bounds.min, bounds.size() / f64::from(count), count + 1);
     (0..side.pow(3))
         .map(move |n| min + step * DVec3::from_array([n % side, n / side % side, n / (side * side)].map(f64::from)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cell with a point of the surface is never clear, wherever it is and however close.
+    #[test]
+    fn a_cell_that_the_surface_touches_is_not_clear() {
+        let cell = Bounds::new(DVec3::ZERO, DVec3::ONE);
+        for p in nodes(&cell, 16) {
+            let corner = |n: usize| DVec3::from_array([0, 1, 2].map(|axis| (n >> axis & 1) as f64));
+            assert!(!is_clear(std::array::from_fn(|n| corner(n).distance(p))), "{p}");
+        }
+        // A face right below a cell does not reach it.
+        assert!(is_clear(std::array::from_fn(|n| 0.3 + (n >> 2) as f64)));
+    }
 }

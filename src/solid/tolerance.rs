@@ -21,8 +21,8 @@ impl Solid {
     ///
     /// The tolerance is that of one operation: of the offset, not of what it is an offset of. It is
     /// in the units of the solid as it is here: if the solid is scaled afterwards, so is the
-    /// tolerance. Of a chamfer, the ball is measured that says where its face ends; the face itself
-    /// is not.
+    /// tolerance. Of a chamfer, the ball is measured that says where its face ends, without this
+    /// method to a thousandth of four legs; the face itself is not.
     ///
     /// # Limits
     ///

@@ -187,6 +187,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn inward(&self, _zone: &Zone) -> Option<DVec3> {
         None
     }
+    /// The most that the value changes by per length unit anywhere, where that is known.
+    fn slope_bound(&self) -> Option<f64> {
+        (self.convex() || self.exact()).then_some(1.0)
+    }
     /// The most that the value changes by per length unit over a zone.
     fn steepest(&self, zone: &Zone) -> f64 {
         steepest(self.dual_range(Dual::point(zone.hull())).d)

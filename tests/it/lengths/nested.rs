@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::thread;
 
 use glam::{DVec2, DVec3};
-use rvachev::{Profile, Solid};
+use rvachev::{Blend, Profile, Solid};
 
 use super::{CORNER, Outcome, TOLERANCE, fillet, l_profile, report, rounded_box};
 use crate::support::near;
@@ -112,5 +112,29 @@ fn the_gap_of_an_l_and_a_bar_is_filled() -> Outcome {
     println!("L and bar: {joined} joined, {closed} closed");
     near(closed, 77.7165, 0.05);
     near(joined, closed, 0.05);
+    Ok(())
+}
+
+/// Where surfaces all but touch, what small cells leave is meshed in smaller ones, as often as it
+/// takes.
+#[test]
+fn where_a_tube_grazes_a_cylinder_little_is_left() -> Outcome {
+    let tube = Solid::torus(6.210, 3.709) - Solid::cuboid([9.288, 21.037, 11.937]).translate([-4.0, -7.0, 2.0]);
+    let post = Solid::cylinder(6.783, 14.390).translate([-5.0, 3.0, 4.0]);
+    let body = (tube | post) - Solid::cuboid([11.087, 12.160, 6.968]).translate([-8.0, 7.0, 5.0]);
+    let accuracy = body.filleted(0.624).accuracy()?;
+    assert!(accuracy.error < 8.0 * accuracy.tolerance, "{accuracy:?}");
+    Ok(())
+}
+
+/// What is measured of a chamfer, and so all that is measured from it, goes by its leg, and not by
+/// the ball that keeps it off flush faces.
+#[test]
+fn lengths_of_chamfers_are_as_exact_as_their_legs() -> Outcome {
+    let leg = 1.0;
+    let stand = Solid::cuboid([20.0, 20.0, 2.0]).union_with(Solid::cylinder(3.0, 12.0), Blend::Chamfer { leg });
+    assert!(stand.accuracy()?.tolerance <= 4e-3 * leg, "{:?}", stand.accuracy());
+    let rounded = stand.rounded(0.5).accuracy()?;
+    assert!(rounded.error < 0.015 * leg, "{rounded:?}");
     Ok(())
 }
