@@ -158,15 +158,20 @@ mod tests {
     use glam::DVec3;
 
     use crate::distance::compiled;
-    use crate::{Bounds, Solid, rad};
+    use crate::{Blend, Bounds, Solid, rad};
 
     #[test]
     fn values_change_by_no_more_than_slopes_tell() {
         let bar = Solid::cuboid([1.0, 0.8, 2.0]).translate([2.0, 0.3, 0.0]);
         let (mut steepest, mut worst, mut most) = (0.0f64, 0.0f64, 0.0f64);
-        for solid in
-            [bar.clone(), bar.twist(rad(0.6)), bar.twist(rad(1.0)) | Solid::sphere(1.0), bar.bend(0.2, rad(0.4))]
-        {
+        let angle = &bar | Solid::cuboid([3.0, 0.5, 0.5]);
+        for solid in [
+            bar.clone(),
+            bar.twist(rad(0.6)),
+            bar.twist(rad(1.0)) | Solid::sphere(1.0),
+            bar.bend(0.2, rad(0.4)),
+            angle.union_with(Solid::sphere(1.0), Blend::Fillet { radius: 0.4 }),
+        ] {
             let program = &compiled(&solid).unwrap().surface;
             for n in 0..200 {
                 let at = |k: f64| (f64::from(n) * k).fract();

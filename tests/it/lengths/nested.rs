@@ -135,6 +135,6 @@ fn lengths_of_chamfers_are_as_exact_as_their_legs() -> Outcome {
     let stand = Solid::cuboid([20.0, 20.0, 2.0]).union_with(Solid::cylinder(3.0, 12.0), Blend::Chamfer { leg });
     assert!(stand.accuracy()?.tolerance <= 4e-3 * leg, "{:?}", stand.accuracy());
     let rounded = stand.rounded(0.5).accuracy()?;
-    assert!(rounded.error < 0.015 * leg, "{rounded:?}");
+    assert!(rounded.tolerance < 0.015 * leg, "{rounded:?}");
     Ok(())
 }
