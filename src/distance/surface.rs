@@ -42,7 +42,7 @@ const CELLS_A_LEAF: f64 = 500.0;
 
 /// Cells are halved while more than this part of the surface is off, or a patch by [`GROSS`]
 /// tolerances.
-pub(super) const FEW: f64 = 1e-4;
+pub(super) const FEW: f64 = 5e-4;
 
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;
