@@ -7,8 +7,8 @@ use rvachev_num::lanes::{F32, F64, Lanes, Twice};
 use super::SurfaceDistance;
 use super::block::{BLOCK, Block};
 use super::closest::dot;
-use super::packet::{Packet, WIDEST};
-use super::packets::{Packets, Seeds};
+use super::packet::Packet;
+use super::packets::{Close, Packets, Seeds};
 use super::pairs::Pairs;
 use super::room::{Room, Roomy};
 use super::search::{Entries, Nearest, Stack};
@@ -286,6 +286,7 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
     let mut ways = [[0.0; BLOCK]; 3];
     let mut squares = [0.0; BLOCK];
     let mut patches = [0; BLOCK];
+    let mut close = Vec::new();
     let mut from = 0;
     while from < out[0].len() {
         let len = BLOCK.min(out[0].len() - from);
@@ -315,32 +316,29 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
             slope[2].store(&mut out[3][to.clone()]);
             if packets.are_close(square) {
                 let (squares, signs) = (square.all().0, sign.all().0);
-                refine(packets, [squares, signs], &patches[at..at + L::WIDTH], points, out, to.start);
+                let here = (0..L::WIDTH).filter(|i| packets.is_close(squares[*i]));
+                close.extend(here.map(|i| (to.start + i, patches[at + i], signs[i])));
             }
             at += L::WIDTH;
+        }
+        if !close.is_empty() {
+            refine(packets, &close, points, out);
+            close.clear();
         }
         from += len;
     }
     work.room.give();
 }
 
-/// Computes what is close to the surface again, in double precision: the squares of the distances,
-/// the signs and the patches of a packet that starts at `at`.
+/// Computes what is close to the surface again, in double precision: places in the chunk, nearest
+/// patches and signs.
 #[inline(never)]
-fn refine(
-    packets: &Packets<'_>,
-    [squares, signs]: [[f32; WIDEST]; 2],
-    patches: &[u32],
-    [x, y, z]: [&[f32]; 3],
-    out: &mut [&mut [f32]; 4],
-    at: usize,
-) {
-    for (i, patch) in patches.iter().enumerate() {
-        if packets.is_close(squares[i]) {
-            let jet = packets.one([x[at + i], y[at + i], z[at + i]], *patch, signs[i]);
-            for (column, part) in out.iter_mut().zip(jet) {
-                column[at + i] = part;
-            }
+fn refine(packets: &Packets<'_>, close: &[(usize, u32, f32)], points: [&[f32]; 3], out: &mut [&mut [f32]; 4]) {
+    let asked = |&(at, patch, sign): &(usize, u32, f32)| Close { p: points.map(|axis| axis[at]), patch, sign };
+    let jets = packets.close(&close.iter().map(asked).collect::<Vec<Close>>());
+    for ((at, ..), jet) in close.iter().zip(jets) {
+        for (column, part) in out.iter_mut().zip(jet) {
+            column[*at] = part;
         }
     }
 }
@@ -353,9 +351,7 @@ fn slopes_by_point(packets: &Packets<'_>, [x, y, z]: [&[f32]; 3], out: &mut [&mu
         let p = [x[at], y[at], z[at]];
         let best = packets.patches.search_one(packets.local(p.map(f64::from)));
         take_sides(packets, [x, y, z], &[best.square as f32], &mut out[0][at..=at], at);
-        let jet = packets.one(p, best.which as u32, out[0][at]);
-        for (column, part) in out.iter_mut().zip(jet) {
-            column[at] = part;
-        }
+        let close = (at, best.which as u32, out[0][at]);
+        refine(packets, &[close], [x, y, z], out);
     }
 }

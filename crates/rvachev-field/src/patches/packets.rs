@@ -8,8 +8,9 @@ use super::packet::Packet;
 use super::plane::Plane;
 use super::search::Range;
 
-use super::{Patches, SurfaceDistance};
-use crate::{Placement, VALUE_LIMIT};
+use super::{Foot, Patches, SurfaceDistance};
+use crate::kernel::Element;
+use crate::{Chunk, Placement, VALUE_LIMIT};
 
 /// Points farther out than this, in units of the surface's frame, are moved there: no square
 /// overflows single precision.
@@ -58,6 +59,13 @@ impl Seeds {
             i += 1;
         }
     }
+}
+
+/// A point that is close to the surface: the patch that is nearest to it, and its sign.
+pub(super) struct Close {
+    pub(super) p: [f32; 3],
+    pub(super) patch: u32,
+    pub(super) sign: f32,
 }
 
 /// A chunk's way into the surface's frame and back.
@@ -181,22 +189,47 @@ impl Packets<'_> {
         self.placement.pull(along)
     }
 
-    /// Whether some of the points need [`one`](Packets::one).
+    /// Whether some of the points need [`close`](Packets::close).
     #[inline(always)]
     pub(super) fn are_close<R: Packet>(&self, square: R) -> bool {
         square.any_below(square.lift(self.close))
     }
 
-    /// Value and gradient of a point whose nearest patch is known, in double precision.
-    pub(super) fn one(&self, p: [f32; 3], patch: u32, sign: f32) -> [f32; 4] {
-        let p = self.placement.apply(p.map(f64::from));
-        let foot = self.patches.foot_on(patch as usize, self.leaf.flattened(DVec3::from_array(p)));
-        let (value, slope) = self.leaf.towards(p, foot, f64::from(sign));
-        let [x, y, z] = self.placement.pull(slope.map(|part| part * self.placement.scale));
-        [self.placement.finish(value), x, y, z].map(|v| v as f32)
+    /// Values and gradients of points whose nearest patches are known, in double precision.
+    pub(super) fn close(&self, points: &[Close]) -> Vec<[f32; 4]> {
+        let foot = |close: &Close| {
+            let p = self.leaf.flattened(DVec3::from_array(self.placement.apply(close.p.map(f64::from))));
+            (p, self.patches.foot_on(close.patch as usize, p))
+        };
+        let found: Vec<(DVec3, Option<Foot>)> = points.iter().map(foot).collect();
+        let mut falls = vec![false; points.len()];
+        self.falls(&found, &mut falls);
+        let jet = |((close, (p, foot)), falls): ((&Close, &(DVec3, Option<Foot>)), &bool)| {
+            let (value, slope) = self.leaf.towards(*p, *foot, f64::from(close.sign), |_| *falls);
+            let [x, y, z] = self.placement.pull(slope.map(|part| part * self.placement.scale));
+            [self.placement.finish(value), x, y, z].map(|v| v as f32)
+        };
+        points.iter().zip(&found).zip(&falls).map(jet).collect()
     }
 
-    /// Whether a point that far away needs [`one`](Packets::one).
+    /// Whether the sign's field falls on the way from their feet to points, of which it is asked.
+    fn falls(&self, found: &[(DVec3, Option<Foot>)], falls: &mut [bool]) {
+        let asked = self.leaf.doubtful(found);
+        let Some((last, _)) = asked.last() else { return };
+        let count = asked.len().next_multiple_of(f32::widest());
+        let numbers = asked.iter().map(|(number, _)| number).chain(std::iter::repeat(last)).take(count);
+        let points: Vec<[f32; 3]> = numbers.map(|number| found[*number].0.as_vec3().to_array()).collect();
+        let [x, y, z] = [0, 1, 2].map(|axis: usize| points.iter().map(|p| p[axis]).collect::<Vec<f32>>());
+        let mut out = [(); 4].map(|()| vec![0.0f32; count]);
+        let [value, dx, dy, dz] = &mut out;
+        let (points, placement) = ([&x[..], &y[..], &z[..]], &Placement::IDENTITY);
+        self.leaf.sign.gradients(Chunk { points, placement, out: [value, dx, dy, dz] });
+        for (at, (number, away)) in asked.iter().enumerate() {
+            falls[*number] = DVec3::new(dx[at].into(), dy[at].into(), dz[at].into()).dot(*away) < 0.0;
+        }
+    }
+
+    /// Whether a point that far away needs [`close`](Packets::close).
     pub(super) fn is_close(&self, square: f32) -> bool {
         f64::from(square) < self.close
     }

@@ -104,22 +104,28 @@ impl SurfaceDistance {
 
     /// The same and the derivatives.
     pub(super) fn signed_with_slope(&self, p: [f64; 3], sign: f64) -> (f64, [f64; 3]) {
-        let foot = self.patches.nearest(self.flattened(DVec3::from_array(p)));
-        self.towards(p, foot, sign)
+        let p = self.flattened(DVec3::from_array(p));
+        self.towards(p, self.patches.nearest(p), sign, |away| self.falls(p, away))
     }
 
-    /// The same by the foot, where there is one.
-    pub(super) fn towards(&self, p: [f64; 3], foot: Option<Foot>, sign: f64) -> (f64, [f64; 3]) {
+    /// The same of a flattened point by its foot, where there is one, and by whether the sign's
+    /// field falls in a direction from there, where that is asked for.
+    pub(super) fn towards(
+        &self,
+        p: DVec3,
+        foot: Option<Foot>,
+        sign: f64,
+        falls: impl FnOnce(DVec3) -> bool,
+    ) -> (f64, [f64; 3]) {
         let Some(foot) = foot else {
             return (with_sign(VALUE_LIMIT, sign), [0.0; 3]);
         };
-        let p = self.flattened(DVec3::from_array(p));
-        let mut slope = if foot.distance < AT_SURFACE * self.patches.unit() {
+        let mut slope = if self.is_at(foot) {
             -foot.normal
         } else {
             let away = (p - foot.point) / foot.distance;
             let is_outside = if self.is_between(away, foot) {
-                self.falls(p, away)
+                falls(away)
             } else if sign == 0.0 {
                 away.dot(foot.normal) > 0.0
             } else {
@@ -132,6 +138,22 @@ impl SurfaceDistance {
             slope[axis] = 0.0;
         }
         (with_sign(foot.distance, sign), slope.to_array())
+    }
+
+    /// Whether a point is at its foot: the direction from there is rounding.
+    fn is_at(&self, foot: Foot) -> bool {
+        foot.distance < AT_SURFACE * self.patches.unit()
+    }
+
+    /// The directions from their feet of those flattened points of which it is asked whether the
+    /// sign's field falls there, and their numbers.
+    pub(super) fn doubtful(&self, points: &[(DVec3, Option<Foot>)]) -> Vec<(usize, DVec3)> {
+        let away = |(number, (p, foot)): (usize, &(DVec3, Option<Foot>))| {
+            let foot = foot.filter(|foot| !self.is_at(*foot))?;
+            let away = (*p - foot.point) / foot.distance;
+            self.is_between(away, foot).then_some((number, away))
+        };
+        points.iter().enumerate().filter_map(away).collect()
     }
 
     /// Whether a point in this direction from its foot may be between the patches and where the
