@@ -13,7 +13,7 @@ use super::program::{Edge, Kind, Node, Program, Region};
 use super::ranges::{hull_of, joined};
 use super::scene::Instance;
 use crate::{Bounds, Interval};
-use rvachev_field::{AnyField, Pieces, Zone};
+use rvachev_field::{AnyField, Op, Pieces, Rule, Zone};
 
 /// What a region holds of a solid, and the program for it if that is another.
 pub(crate) enum Narrowed {
@@ -236,6 +236,19 @@ impl Program {
             Some((_, root)) => self.trimmed(nodes, list, simpler, root),
             None => self.clone(),
         }
+    }
+
+    /// What it is a union or an intersection of by min and max, and which; nothing if it is none.
+    pub(super) fn choices(&self) -> Option<(Op, Vec<Program>)> {
+        let node = &self.nodes[self.root.node()];
+        let Kind::Join { op, rule: Rule::MinMax, .. } = node.kind else { return None };
+        let negated = self.root.negated();
+        let op = op.flip_if(negated);
+        let part = |edge: &Edge| {
+            let (nodes, operands, simpler) = (self.nodes.to_vec(), self.operands.to_vec(), self.simpler.to_vec());
+            self.trimmed(nodes, operands, simpler, edge.flip_if(negated))
+        };
+        Some((op, self.list(node).iter().map(part).collect()))
     }
 
     /// A program of the nodes that `root` reaches.

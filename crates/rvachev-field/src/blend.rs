@@ -49,7 +49,9 @@ use crate::{Euclid, NormKind, Real};
 /// legs are exact on planes, and wherever the angle between the operands stays the same away from
 /// the edge, as on caps; elsewhere on round operands they are right to 2 % up to a twelfth of the
 /// radius and to 7 % up to a quarter. Where an operand has an edge of its own across the joined
-/// one, it goes round it in a mitre. Operands with a gap narrower than 0.28 of the leg are bridged.
+/// one, it goes round it in a mitre: the parts of unions, intersections and differences by min and
+/// max have a face each, joined as they are, up to 64 pairs of parts near the joint. Operands with a
+/// gap narrower than 0.28 of the leg are bridged.
 ///
 /// A smooth blend adds wherever the operands' values differ by less than its radius. On flush faces
 /// both values are the same, so that a union rises above them, by up to a quarter of the radius,
@@ -65,8 +67,8 @@ use crate::{Euclid, NormKind, Real};
 ///
 /// A smooth blend keeps the Lipschitz constant of its operands. What a fillet adds has one of 1
 /// between convex operands, of at most 1.5 elsewhere. A chamfer has that of the operands where they
-/// are planes; where they bend it is a little steeper, and it jumps where a gradient does. A
-/// displacement and Ricci's blend promise none.
+/// are planes; where they bend it is a little steeper, and it jumps where the gradient of one of
+/// their parts does. A displacement and Ricci's blend promise none.
 ///
 /// Sources: A. A. Pasko and V. V. Savchenko, *Blending operations for the functionally based
 /// constructive geometry* (1994); A. Ricci, *A constructive geometry for computer graphics*

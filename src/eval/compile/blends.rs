@@ -13,12 +13,23 @@ use crate::eval::signed::Signed;
 use crate::eval::source::Measured;
 use crate::solid::{self, Operation};
 use crate::{Blend, Bounds, Solid, SolidError};
-use rvachev_field::{AnyField, Op, Rule};
+use rvachev_field::{AnyField, Op, Rule, Zone};
 
 /// Fillets are this much smaller, in radii, so that flush faces stay as they are; and no smaller
 /// than that for what measuring may be off.
 const FLUSH: f64 = 1e-5;
 const LARGEST_MARGIN: f64 = 1e-3;
+
+/// A chamfer has a face for each two parts of its operands if these are not more.
+const FACES: usize = 64;
+
+/// What the faces of a chamfer have in common.
+struct Faces {
+    /// −1 for an operand whose complement is joined.
+    signs: [f64; 2],
+    chamfer: Chamfer,
+    bounds: Bounds,
+}
 
 impl Compiler<'_> {
     pub(super) fn blended(
@@ -121,15 +132,45 @@ impl Compiler<'_> {
         let frame = self.contexts.get(site.context).frame;
         let near = Near::of(operation, *blend, operands);
         let Some(bounds) = near.boxes.first().copied() else { return Ok(Vec::new()) };
-        let bevel: Arc<dyn AnyField> =
-            Arc::new(Bevel::new([a.surface.clone(), b.surface.clone()], signs, chamfer, bounds));
+        let faces = Faces { signs, chamfer, bounds };
+        // Of many operands' parts only those that count near the joint have faces.
+        let asked = Zone::of_bounds(&bounds.inflate(leg));
+        let pair = [&a.surface, &b.surface].map(|operand| operand.reduced(&asked));
+        let is_few = pair[0].leaf_count() * pair[1].leaf_count() <= FACES;
+        let bevel = if is_few { self.faces(site, &faces, pair) } else { self.face(site, &faces, pair) };
         let ball =
             Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
         let margin = margin(site.solid, &measured, near.radius);
         let fill: Arc<dyn AnyField> =
             Arc::new(Fill::new(near.radius, ball, Vec::new(), margin).within(near.boxes, near.hull));
-        let both = [self.made(&bevel, site, 0.0), self.made(&fill, site, 0.0)];
+        let both = [bevel, self.made(&fill, site, 0.0)];
         Ok(vec![self.code.operation(Operation::Intersection, Rule::MinMax, frame, &both)])
+    }
+
+    /// The faces between all parts of two operands, joined as these are. That of a union by itself
+    /// goes by the part that is nearest, and jumps where another one is.
+    fn faces(&mut self, site: Site<'_>, of: &Faces, pair: [Program; 2]) -> Built {
+        let choices = |side: usize| pair[side].choices().map(|(op, parts)| (side, op, parts));
+        let Some((side, op, parts)) = choices(0).or_else(|| choices(1)) else {
+            return self.face(site, of, pair);
+        };
+        let is_union = op.flip_if(of.signs[side] < 0.0) == Op::Or;
+        let faces: Vec<Built> = (parts.into_iter())
+            .map(|part| {
+                let mut pair = pair.clone();
+                pair[side] = part;
+                self.faces(site, of, pair)
+            })
+            .collect();
+        let operation = if is_union { Operation::Union } else { Operation::Intersection };
+        let frame = self.contexts.get(site.context).frame;
+        self.code.operation(operation, Rule::MinMax, frame, &faces)
+    }
+
+    /// The face between two operands.
+    fn face(&mut self, site: Site<'_>, of: &Faces, pair: [Program; 2]) -> Built {
+        let bevel = Bevel::new(pair, of.signs, of.chamfer, of.bounds);
+        self.made(&(Arc::new(bevel) as Arc<dyn AnyField>), site, 0.0)
     }
 
     /// A join of operands with what is added to it, or, for intersections and differences, taken

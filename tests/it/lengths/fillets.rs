@@ -396,3 +396,37 @@ fn chamfers_are_left_out_beyond_their_legs() -> Outcome {
     assert_eq!(narrowed.leaf_count(), 1);
     Ok(())
 }
+
+/// The parts of an operand have faces that meet in a mitre: where the nearest part changes, the
+/// surface has no step.
+#[test]
+fn chamfers_of_joined_operands_have_no_steps() -> Outcome {
+    const STEPS: u32 = 100;
+    let chamfer = Blend::Chamfer { leg: 0.7 };
+    let egg = Solid::ellipsoid([4.6, 4.5, 4.3]).rotate_x(rad(0.5 * PI)).translate([-4.0, 6.0, -2.0]);
+    let (post, bar) = (Solid::cylinder(4.1, 9.0), Solid::cylinder(3.6, 13.6).rotate_x(rad(0.5 * PI)));
+    let (both, bar) = (&post | &egg, bar.translate([-5.0, -3.0, 1.0]));
+    let solids = [
+        both.union_with(&bar, chamfer),
+        bar.union_with(&both, chamfer),
+        Solid::cuboid([30.0, 30.0, 4.0]).difference_with(&both, chamfer),
+        (&post - egg.translate([2.0, 0.0, 0.0])).intersection_with(&bar.translate([3.0, 2.0, -3.0]), chamfer),
+    ];
+    let mut random = Random::new(7);
+    for (number, solid) in solids.iter().enumerate() {
+        let mut found = 0;
+        for _ in 0..400 {
+            let from = DVec3::new(-3.0, 3.0, 1.0) + random.vector(-3.0, 3.0);
+            let way = random.vector(-1.0, 1.0) / f64::from(STEPS);
+            let values: Result<Vec<f64>, _> = (0..STEPS).map(|n| solid.value(from + f64::from(n) * way)).collect();
+            let values = values?;
+            for pair in values.windows(2).filter(|pair| pair[0].signum() != pair[1].signum()) {
+                let (rise, step) = ((pair[1] - pair[0]).abs(), way.length());
+                assert!(rise < 3.0 * step + 1e-2, "{number}: {} after {} in {step} from {from}", pair[1], pair[0]);
+                found += 1;
+            }
+        }
+        assert!(found > 20, "{number}: {found}");
+    }
+    Ok(())
+}
