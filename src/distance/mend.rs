@@ -28,6 +28,9 @@ const BOXES: usize = 512;
 const CELLS: f64 = 8.0;
 const SPLITS: u32 = 4;
 
+/// Cells of a box are smaller than those before by this factor at least.
+const SMALLER: f64 = 0.8;
+
 /// So many boxes are meshed at a time: what is found is kept until all of them are.
 const AT_ONCE: usize = 16;
 
@@ -71,12 +74,8 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
     let Cells { size, boxes, most } = cells;
     let spots = std::mem::take(&mut quilt.spots);
     let worst = |numbers: &[usize]| numbers.iter().map(|n| spots[*n].off).fold(0.0, f64::max);
-    let in_parts = |group: Group| match worst(&group.1) > GROSS * tolerance {
-        true => parted(group, &spots, size, tolerance),
-        false => vec![group],
-    };
     let found = if boxes == 0 { Vec::new() } else { groups(&spots, tolerance, run)? };
-    let mut groups: Vec<Group> = found.into_iter().flat_map(in_parts).collect();
+    let mut groups: Vec<Group> = found.into_iter().flat_map(|group| parted(group, &spots, size, tolerance)).collect();
     order::falling(&mut groups, |(_, numbers)| worst(numbers));
     groups.truncate(boxes);
     // What is within a few tolerances may stay as it is.
@@ -84,9 +83,10 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
     let mut left = vec![true; spots.len()];
     let mended = |(bounds, numbers): &Group, most: usize| {
         run.check()?;
-        // In cells that are no smaller nothing would be seen that was not.
+        // In cells that are hardly smaller nothing would be seen that was not, and it would not end;
+        // those below the tolerance tell nothing more.
         let cell = bounds.longest_side() / CELLS;
-        if cell > size {
+        if cell > SMALLER * size || cell < tolerance {
             return Ok(None);
         }
         let care = Care { depth: SPLITS, most, ..Care::new(tolerance) };

@@ -410,7 +410,7 @@ fn chamfers_of_joined_operands_have_no_steps() -> Outcome {
         both.union_with(&bar, chamfer),
         bar.union_with(&both, chamfer),
         Solid::cuboid([30.0, 30.0, 4.0]).difference_with(&both, chamfer),
-        (&post - egg.translate([2.0, 0.0, 0.0])).intersection_with(&bar.translate([3.0, 2.0, -3.0]), chamfer),
+        (&post - egg.translate([2.0, 0.0, 0.0])).intersection_with(bar.translate([3.0, 2.0, -3.0]), chamfer),
     ];
     let mut random = Random::new(7);
     for (number, solid) in solids.iter().enumerate() {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::thread;
 
 use glam::{DVec2, DVec3};
-use rvachev::{Blend, Profile, Solid};
+use rvachev::{Blend, Gielis, Profile, RFunction, Solid, Supershape, deg, rad};
 
 use super::{CORNER, Outcome, TOLERANCE, fillet, l_profile, report, rounded_box};
 use crate::support::near;
@@ -136,5 +136,33 @@ fn lengths_of_chamfers_are_as_exact_as_their_legs() -> Outcome {
     assert!(stand.accuracy()?.tolerance <= 4e-3 * leg, "{:?}", stand.accuracy());
     let rounded = stand.rounded(0.5).accuracy()?;
     assert!(rounded.tolerance < 0.015 * leg, "{rounded:?}");
+    Ok(())
+}
+
+/// Found by random search: boxes about spots that stay as they are became no smaller, without end,
+/// and the stack was used up.
+#[test]
+fn spots_that_are_not_mended_come_to_an_end() -> Outcome {
+    const P: RFunction = RFunction::P(2.0);
+    let lobes = |m: f64, [n1, n2]: [f64; 2], scale: [f64; 3]| {
+        Solid::from(Supershape::new(Gielis::new(m, n1, n2, n2), Gielis::new(4.0, 8.0, 8.0, 8.0)).scaled(scale))
+    };
+    let seven =
+        lobes(7.0, [8.559157690498978, 10.83350627264008], [6.72809224948287, 6.012572253122926, 8.240531159564853]);
+    let four =
+        lobes(4.0, [9.995884290430695, 8.242321624886245], [5.8667592611163855, 8.819556159898639, 5.126258322969079]);
+    let cushion = Solid::superellipsoid(
+        [5.913463925942779, 7.284854713827372, 4.477395340800285],
+        0.9337158058770001,
+        0.36772188935428857,
+    );
+    let body = Solid::capsule(2.303228473290801, 11.695477318391204)
+        .union(seven.translate([-3.0, 6.0, 0.0]), P)
+        .union(cushion.translate([-8.0, 7.0, 3.0]), P);
+    let hole = Solid::capsule(2.9835726493038237, 13.632113933190704).rotate_x(deg(358.0));
+    let body = body.difference(hole.translate([-3.0, 8.0, -6.0]), P);
+    let body = body.union(four.rotate_x(deg(90.0)).translate([1.0, -6.0, -5.0]), P);
+    let filled = body.twist(rad(0.0241959220636636)).filleted(1.4611738728825003);
+    assert!(filled.accuracy()?.error < 0.2, "{:?}", filled.accuracy());
     Ok(())
 }
