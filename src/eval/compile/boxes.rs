@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Compiler, Site};
+use super::{Compiler, Site, kept};
 use crate::eval::code::{Built, snug};
 use crate::eval::support::box_under;
 use crate::eval::swell::Swell;
@@ -33,6 +33,10 @@ impl Compiler<'_> {
         let is = |operation| match node {
             solid::Node::Join { operation: own, .. }
             | solid::Node::Blend { operation: own, blend: Blend::Smooth { .. }, .. } => *own == operation,
+            // What is taken off makes values smaller.
+            solid::Node::Blend { operation: own, ball: Some(_), .. } => {
+                *own == operation && operation != Operation::Union
+            }
             _ => false,
         };
         match node {
@@ -47,11 +51,26 @@ impl Compiler<'_> {
                 let inside = inner.next().unwrap_or(Bounds::ALL);
                 self.image(warp, context, &inside)
             }
+            solid::Node::Blend { operation: Operation::Union, operands, ball: Some(_), .. } => {
+                inner.fold(self.filling(operands, context, reach), |all, own| all.union(&own))
+            }
             _ if is(Operation::Difference) => inner.next().unwrap_or(Bounds::ALL),
             _ if is(Operation::Intersection) => inner.fold(Bounds::ALL, |all, own| all.intersection(&own)),
             _ if is(Operation::Union) => inner.fold(Bounds::EMPTY, |all, own| all.union(&own)),
             _ => Bounds::ALL,
         }
+    }
+
+    /// A box, in the frame of `context`, of where the value of what a fillet or chamfer adds between
+    /// operands is above `-reach`: it is held to their hull, and falls as lengths do beyond it.
+    fn filling(&self, operands: &[Solid], context: u32, reach: f64) -> Bounds {
+        let context = self.contexts.get(context);
+        if context.moved.is_some() {
+            return Bounds::ALL;
+        }
+        let of_operand = |operand: &Solid| kept(operand).map_or(Bounds::ALL, |programs| programs.bounds());
+        let hull = operands.iter().map(of_operand).fold(Bounds::EMPTY, |all, own| all.union(&own));
+        if hull.is_empty() { hull } else { snug(hull.inflate(reach / context.scale).transformed(&context.forward)) }
     }
 
     /// What of a box is no farther than the node at `site` reaches along the axes of its frame.

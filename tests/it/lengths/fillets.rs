@@ -430,3 +430,31 @@ fn chamfers_of_joined_operands_have_no_steps() -> Outcome {
     }
     Ok(())
 }
+
+/// Found by random search: a smooth union of what is filled was told to have no end where it is
+/// twisted.
+#[test]
+fn what_is_joined_to_fillets_and_twisted_has_bounds() -> Outcome {
+    let (post, bar) = (Solid::cylinder(4.0, 6.0), Solid::cuboid([3.0, 3.0, 12.0]));
+    let block = Solid::cuboid([8.0, 12.0, 5.0]).translate([1.0, -6.0, 2.0]);
+    let mut random = Random::new(3);
+    for blend in [Blend::Fillet { radius: 0.4 }, Blend::Chamfer { leg: 0.4 }] {
+        let blended =
+            [post.union_with(&bar, blend), post.difference_with(&bar, blend), post.intersection_with(&bar, blend)];
+        for (number, body) in blended.into_iter().enumerate() {
+            let moved = body.scale(1.5).rotate_x(rad(0.4)).translate([2.0, 0.0, 0.0]);
+            let twisted = moved.smooth_union(&block, 1.9).twist(rad(0.03));
+            let bounds = twisted.bounds()?;
+            assert!(bounds.is_finite(), "{blend:?} {number}: {bounds:?}");
+            let mut inside = 0;
+            for _ in 0..4000 {
+                let p = bounds.center() + bounds.size() * random.vector(-1.0, 1.0);
+                let is_inside = twisted.contains(p)?;
+                assert!(!is_inside || bounds.contains(p), "{blend:?} {number}: {p}");
+                inside += usize::from(is_inside);
+            }
+            assert!(inside > 50, "{blend:?} {number}: {inside}");
+        }
+    }
+    Ok(())
+}
