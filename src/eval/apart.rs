@@ -6,6 +6,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
+use glam::DVec3;
 use rvachev_num::order;
 
 use super::accuracy::Accuracy;
@@ -46,26 +47,32 @@ impl Work<'_> {
     }
 }
 
-/// What is to be done for a solid, operands first, its own compilation last.
-pub(super) fn works<'a>(root: &'a Solid, exact: &Exactness, run: &Run) -> Result<Vec<Work<'a>>, Cancelled> {
+/// What is to be done for solids, operands first, their own compilation last.
+pub(super) fn works<'a>(roots: Vec<&'a Solid>, exact: &Exactness, run: &Run) -> Result<Vec<Work<'a>>, Cancelled> {
     let (mut works, mut met) = (Vec::new(), HashSet::new());
-    let mut pending = vec![(root, false)];
+    let mut pending: Vec<_> = roots.iter().rev().map(|root| (*root, false)).collect();
     while let Some((solid, is_done)) = pending.pop() {
         run.check()?;
         if is_done {
             let alone = alone(solid, exact);
-            let is_measured = !alone.is_empty();
+            let is_measured = is_blended(solid) || !alone.is_empty();
             works.extend(alone.into_iter().map(Work::Compile));
             works.extend(is_measured.then_some(Work::Measure(solid)));
         } else if met.insert(solid.address()) && kept(solid).is_none() {
             // What was compiled before has its parts.
             pending.push((solid, true));
-            let ball = solid.node().ball().filter(|_| !exact.is_certain(solid));
+            let ball = solid.node().ball().filter(|_| !is_blended(solid) && !exact.is_certain(solid));
             pending.extend(solid.node().parts().iter().chain(ball).map(|part| (part, false)));
         }
     }
-    works.push(Work::Compile(root));
+    works.extend(roots.into_iter().map(Work::Compile));
     Ok(works)
+}
+
+/// Whether a ball rolls along the operands of a node: it is found by what of these is near the
+/// joint, once they are known.
+pub(super) fn is_blended(solid: &Solid) -> bool {
+    matches!(solid.node(), Node::Blend { ball: Some(_), .. })
 }
 
 /// What of a node is compiled by itself.
@@ -78,7 +85,6 @@ fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> Vec<&'a Solid> {
             let blended = about.iter().flat_map(|_| operand.node().operands());
             blended.chain([operand]).chain(ball).collect()
         }
-        Node::Blend { operands, ball: Some(ball), .. } => operands.iter().chain([ball]).collect(),
         Node::Swept { profile, ball: Some(_), .. } => vec![&profile.0],
         _ => Vec::new(),
     }
@@ -103,7 +109,7 @@ pub(super) fn measure(
             // Of an opening nothing is left if there is no room for the ball, of a closing if
             // there was nothing to close.
             let is_gone = kept(ball).is_none_or(|programs| programs.bounds().is_empty());
-            Measured { field, parts: None, accuracy, is_gone, sides: Vec::new() }
+            Measured { field, parts: None, accuracy, is_gone, sides: Vec::new(), local: None }
         }
         Node::Length { operand, length, about, .. } => {
             let inwards = length.inwards();
@@ -128,7 +134,7 @@ pub(super) fn measure(
             // What is hardly known is not gone for that.
             let noise = accuracy.tolerance.min(tolerance.unwrap_or(DEVIATION * inwards));
             let is_gone = bounds.is_empty() || is_thin && !is_deeper(&*field, &bounds, inwards + noise, run)?;
-            Measured { field, parts, accuracy, is_gone, sides: Vec::new() }
+            Measured { field, parts, accuracy, is_gone, sides: Vec::new(), local: None }
         }
         Node::Blend { operation, blend, operands, ball: Some(ball), .. } => {
             let near = Near::of(*operation, *blend, operands);
@@ -163,7 +169,7 @@ pub(super) fn measure(
                     });
                 }
             }
-            Measured { field, parts: None, accuracy, is_gone: false, sides }
+            Measured { field, parts: None, accuracy, is_gone: false, sides, local: None }
         }
         _ => return Ok(()),
     };
@@ -220,6 +226,26 @@ pub(super) fn measured(solid: &Solid) -> Option<Measured> {
 /// Faces of chamfers are no farther from an operand than so many legs.
 const NEAR_LEGS: f64 = 4.0;
 
+/// Farther than this from an operand nothing counts for what is between it and others.
+pub(super) fn far(blend: Blend) -> f64 {
+    match blend {
+        Blend::Fillet { radius } => FARTHEST * radius,
+        Blend::Chamfer { leg } => (2.0 * BALL_OF_LEGS + NEAR_LEGS) * leg,
+        _ => f64::INFINITY,
+    }
+}
+
+/// A box of what a ball leaves out between two convex operands: straight away from either of them,
+/// by no more than a radius there and back, is a point that is a radius from it and less from the
+/// other.
+fn between_convex(pair: [(&Solid, Bounds); 2], radius: f64) -> Bounds {
+    let middles = pair.iter().fold(Bounds::ALL, |all, (_, own)| all.intersection(&own.inflate(radius)));
+    pair.iter().fold(Bounds::ALL, |all, (operand, _)| {
+        let way = radius * kept(operand).map_or(DVec3::ONE, |programs| programs.outwards(&middles));
+        all.intersection(&Bounds::new(middles.min - way, middles.max + way))
+    })
+}
+
 /// Where the operands of a fillet or chamfer are so near to each other that there may be something
 /// between them.
 pub(super) struct Near {
@@ -246,7 +272,7 @@ fn region_of_ball(joined: &Solid, blend: Blend, bounds: &Bounds) -> Bounds {
 
 impl Near {
     /// A box about all joints.
-    fn region(&self) -> Bounds {
+    pub(super) fn region(&self) -> Bounds {
         self.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own))
     }
 
@@ -285,7 +311,10 @@ impl Near {
         order::rising(&mut order, |a| around[*a].min.x);
         for (at, &first) in order.iter().enumerate() {
             for &second in order[at + 1..].iter().take_while(|other| around[**other].min.x <= around[first].max.x) {
-                let bounds = around[first].intersection(&around[second]).intersection(&inside);
+                let mut bounds = around[first].intersection(&around[second]).intersection(&inside);
+                if matches!(blend, Blend::Fillet { .. }) && !fades {
+                    bounds = bounds.intersection(&between_convex([first, second].map(|i| (&operands[i], boxes[i])), radius));
+                }
                 if !bounds.is_empty() {
                     between.push(bounds);
                 }

@@ -74,7 +74,8 @@ pub(super) struct Foot<'a> {
 impl Coat {
     /// What a node gives to the leaf that is made of its operands, which have been compiled.
     pub(super) fn of(solid: &Solid) -> Coat {
-        let operands = solid.node().operands();
+        let found = measured(solid);
+        let operands = found.as_ref().map_or_else(|| solid.node().operands(), |found| found.operands(solid));
         let palette = |operand: &Solid| kept(operand).map(|programs| programs.palette.clone());
         let all = operands.iter().filter_map(palette).fold(Below::Nothing, |all, own| all.with(own.below()));
         match all {
@@ -94,8 +95,10 @@ impl Coat {
 
 fn operands_of(solid: &Solid) -> Vec<Operand> {
     let node = solid.node();
+    let found = measured(solid);
+    let operands = found.as_ref().map_or_else(|| node.operands(), |found| found.operands(solid));
     let (reach, around) = match node {
-        Node::Blend { operation, blend, operands, .. } => {
+        Node::Blend { operation, blend, .. } => {
             let near = Near::of(*operation, *blend, operands);
             (FARTHEST * near.radius, near.around)
         }
@@ -103,7 +106,7 @@ fn operands_of(solid: &Solid) -> Vec<Operand> {
     };
     // An offset reads the distance itself.
     let own = match node {
-        Node::Length { length: Length::Offset(_) | Length::Shell(_), .. } => measured(solid),
+        Node::Length { length: Length::Offset(_) | Length::Shell(_), .. } => found.as_ref(),
         _ => None,
     };
     let operand = |(operand, bounds): (&Solid, Bounds)| {
@@ -111,7 +114,7 @@ fn operands_of(solid: &Solid) -> Vec<Operand> {
         let distance = own.as_ref().map_or_else(|| sign(&programs), |measured| measured.field.clone());
         Some(Operand { palette: programs.palette.clone(), distance, bounds, reach })
     };
-    node.operands().iter().zip(around).filter_map(operand).collect()
+    operands.iter().zip(around).filter_map(operand).collect()
 }
 
 impl Operand {

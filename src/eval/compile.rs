@@ -15,7 +15,7 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec3;
 
 use super::accuracy::Accuracy;
-use super::apart::{Work, measure, measured, works};
+use super::apart::{Work, is_blended, measure, measured, works};
 use super::coat::Coat;
 use super::code::{Built, Code, snug};
 use super::context::Contexts;
@@ -23,14 +23,15 @@ use super::exact::{Exact, Exactness};
 use super::extent::extent;
 use super::fit::fit;
 use super::flatten::flatten;
+use super::local::Boxes;
 use super::moved_in::is_loose;
 use super::palette::Palette;
 use super::program::{Edge, Program};
 use super::scene::Scene;
 use super::sides::Sides;
-use super::source::{CompileError, DistanceSource};
+use super::source::{CompileError, DistanceSource, Measured};
 use crate::solid::{self, Length, Operation};
-use crate::{Bounds, Cancelled, ParamError, Run, Solid, SolidError};
+use crate::{Bounds, Cancelled, Dual, Interval, ParamError, Run, Solid, SolidError};
 use rvachev_field::{AnyWarp, Rule};
 
 /// A solid's programs.
@@ -85,6 +86,17 @@ impl Compiled {
     /// On how many sides of the surface, inside and outside, the value is the distance.
     pub(crate) fn exact_sides(&self) -> usize {
         usize::from(self.exact.inside) + usize::from(self.exact.outside)
+    }
+
+    /// By how much a point moves along each axis at most when it moves by 1 straight away from the
+    /// surface, within a box outside of the solid.
+    pub(super) fn outwards(&self, bounds: &Bounds) -> DVec3 {
+        if !self.exact.outside || !bounds.is_finite() || bounds.is_empty() {
+            return DVec3::ONE;
+        }
+        let hull = [0, 1, 2].map(|axis| Interval::new(bounds.min[axis], bounds.max[axis]));
+        let slopes = self.surface.evaluate(Dual::point(hull), &mut Vec::new()).gradient();
+        DVec3::from_array(slopes.map(|slope| slope.magnitude().min(1.0)))
     }
 
     /// The axis along which the solid is a column without end: the one axis that its box is
@@ -142,32 +154,74 @@ fn compile_anew(solid: &Solid, source: &'static dyn DistanceSource, run: &Run) -
     let mut exact = Exactness::default();
     exact.add(solid, &run.stage(0.0, PREPARING))?;
     let run = &run.stage(PREPARING, 1.0);
-    let works = works(solid, &exact, run)?;
-    let all: f64 = works.iter().map(Work::effort).sum();
-    let mut done = 0.0;
-    for work in works {
-        run.check()?;
-        let end = done + work.effort();
-        match work {
-            Work::Measure(node) => measure(node, &exact, source, &run.stage(done / all, end / all))?,
-            Work::Compile(part) => {
-                let [to_walk, to_bound] = run.stage(done / all, end / all).stages([WALK, 1.0 - WALK]);
-                if kept(part).is_none() {
-                    let compiled = Compiler::new(&exact, &to_walk)
-                        .compile(part)
-                        .map_err(|error| of_whole(solid, &exact, run, error))?;
-                    let _ = part.compiled().set(Arc::new(compiled));
-                }
-                // What is made of it asks for its box.
-                if let Some(programs) = kept(part).filter(|_| part.address() != solid.address()) {
-                    programs.bounds_with(&to_bound)?;
-                }
-            }
-        }
-        done = end;
-        run.report(done / all);
-    }
+    let works = works(vec![solid], &exact, run)?;
+    let mut workshop = Workshop { whole: solid, exact, boxes: Boxes::default(), locals: Vec::new(), source };
+    workshop.work_off(&works, run)?;
     kept(solid).ok_or(CompileError::Cancelled(Cancelled))
+}
+
+/// Where the parts of a solid are compiled and measured.
+struct Workshop<'a> {
+    whole: &'a Solid,
+    exact: Exactness,
+    boxes: Boxes,
+    /// What of blends is near their joints: what is known of nodes is kept as long as they are.
+    locals: Vec<Solid>,
+    source: &'static dyn DistanceSource,
+}
+
+impl Workshop<'_> {
+    fn work_off(&mut self, works: &[Work<'_>], run: &Run) -> Result<(), CompileError> {
+        let all: f64 = works.iter().map(Work::effort).sum();
+        let mut done = 0.0;
+        for work in works {
+            run.check()?;
+            let end = done + work.effort();
+            let stage = run.stage(done / all, end / all);
+            match *work {
+                Work::Measure(node) if is_blended(node) => self.blend(node, &stage)?,
+                Work::Measure(node) => measure(node, &self.exact, self.source, &stage)?,
+                Work::Compile(part) => self.compile(part, &stage)?,
+            }
+            done = end;
+            run.report(done / all);
+        }
+        Ok(())
+    }
+
+    fn compile(&self, part: &Solid, run: &Run) -> Result<(), CompileError> {
+        let [to_walk, to_bound] = run.stages([WALK, 1.0 - WALK]);
+        if kept(part).is_none() {
+            let compiled = Compiler::new(&self.exact, &to_walk)
+                .compile(part)
+                .map_err(|error| of_whole(self.whole, &self.exact, run, error))?;
+            let _ = part.compiled().set(Arc::new(compiled));
+        }
+        // What is made of it asks for its box.
+        if let Some(programs) = kept(part).filter(|_| part.address() != self.whole.address()) {
+            programs.bounds_with(&to_bound)?;
+        }
+        Ok(())
+    }
+
+    /// Measures what is between the operands of a blend, whose own blends have been measured, from
+    /// what of them is near the joint.
+    fn blend(&mut self, node: &Solid, run: &Run) -> Result<(), CompileError> {
+        if measured(node).is_some() {
+            return Ok(());
+        }
+        let Some(local) = self.boxes.local(node, run)? else { return Ok(()) };
+        self.locals.push(local.clone());
+        self.exact.add(&local, run)?;
+        let parts = local.node().operands().iter().chain(local.node().ball()).collect();
+        let [to_work, to_measure] = run.stages([0.5, 0.5]);
+        self.work_off(&works(parts, &self.exact, run)?, &to_work)?;
+        measure(&local, &self.exact, self.source, &to_measure)?;
+        if let Some(found) = measured(&local).filter(|_| local.address() != node.address()) {
+            let _ = node.measured().set(Arc::new(Measured { local: Some(local), ..found }));
+        }
+        Ok(())
+    }
 }
 
 /// What is wrong with a part as the solid tells it, by the path to it, where it does.

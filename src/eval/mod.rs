@@ -36,6 +36,7 @@ mod hierarchy;
 mod joint;
 mod layers;
 mod list;
+mod local;
 mod moved_in;
 mod narrow;
 mod nothing;

@@ -162,6 +162,15 @@ pub(crate) struct Measured {
     pub(crate) is_gone: bool,
     /// For a fillet, the distances to its operands, on the side where the ball is.
     pub(crate) sides: Vec<Arc<dyn AnyField>>,
+    /// For a blend, the same of what of its operands is near the joint, if that is less.
+    pub(crate) local: Option<Solid>,
+}
+
+impl Measured {
+    /// The operands that it was measured from.
+    pub(super) fn operands<'a>(&'a self, node: &'a Solid) -> &'a [Solid] {
+        self.local.as_ref().unwrap_or(node).node().operands()
+    }
 }
 
 /// A join of distances.

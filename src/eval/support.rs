@@ -48,7 +48,8 @@ fn support(solid: &Solid, direction: DVec3, depth: u32, left: &Cell<usize>) -> f
             below(operand, forward.matrix3.transpose() * direction) + direction.dot(forward.translation)
         }
         Node::Warp { operand, warp } => warp.support(&|direction| below(operand, direction), direction),
-        Node::Join { operation, operands, .. } => {
+        // What a ball leaves out is within the hull of the operands.
+        Node::Join { operation, operands, .. } | Node::Blend { operation, operands, ball: Some(_), .. } => {
             let all = operands.iter().map(|operand| below(operand, direction));
             match operation {
                 Operation::Union | Operation::SymmetricDifference => all.fold(f64::NEG_INFINITY, f64::max),

@@ -156,6 +156,11 @@ pub(super) fn node(operation: Operation, operands: Vec<Solid>, blend: Blend, tol
     Node::Blend { operation, blend, operands, tolerance, ball }
 }
 
+/// The blend of operands, as a solid.
+pub(crate) fn blended(operation: Operation, operands: Vec<Solid>, blend: Blend, tolerance: Option<f64>) -> Solid {
+    Solid::from_node(node(operation, operands, blend, tolerance))
+}
+
 /// What errors call a blended operation.
 pub(super) fn name(blend: &Blend, operation: Operation) -> &'static str {
     let names = blend.names();

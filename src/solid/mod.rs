@@ -26,7 +26,7 @@ mod sweep;
 mod tolerance;
 mod transform;
 
-pub(crate) use blend::BALL_OF_LEGS;
+pub(crate) use blend::{BALL_OF_LEGS, blended};
 pub use composed::Repetition;
 pub(crate) use composed::Sweep;
 pub use error::SolidError;

@@ -87,8 +87,8 @@ impl Compiler<'_> {
         let Some(measured) = measured(site.solid) else { return Vec::new() };
         let is_union = operation == Operation::Union;
         let margin = margin(site.solid, &measured, radius);
-        let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
-        let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
+        let ball = Signed { field: measured.field.clone(), sign: if is_union { 1.0 } else { -1.0 } };
+        let solid::Node::Blend { blend, .. } = site.solid.node() else {
             let radius = rolling(site.solid).unwrap_or(radius);
             let whole = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds());
             // What is taken away goes on beyond the surface: values are 0 where the new one is, and
@@ -97,7 +97,7 @@ impl Compiler<'_> {
             let fill = Fill::new(radius, ball, Vec::new(), margin).within(vec![bounds], hull);
             return vec![self.made(&(Arc::new(fill) as Arc<dyn AnyField>), site, 0.0)];
         };
-        let near = Near::of(operation, *blend, operands);
+        let near = Near::of(operation, *blend, measured.operands(site.solid));
         if near.boxes.is_empty() {
             return Vec::new();
         }
@@ -119,14 +119,15 @@ impl Compiler<'_> {
         operation: Operation,
         leg: f64,
     ) -> Result<Vec<Built>, SolidError> {
-        let solid::Node::Blend { blend, operands, .. } = site.solid.node() else { return Ok(Vec::new()) };
+        let solid::Node::Blend { blend, .. } = site.solid.node() else { return Ok(Vec::new()) };
+        let Some(measured) = measured(site.solid) else { return Ok(Vec::new()) };
+        let operands = measured.operands(site.solid);
         let [a, b] = [self.alone(site, &operands[0])?, self.alone(site, &operands[1])?];
         let signs = match operation {
             Operation::Union => [1.0, 1.0],
             Operation::Difference => [-1.0, 1.0],
             _ => [-1.0, -1.0],
         };
-        let Some(measured) = measured(site.solid) else { return Ok(Vec::new()) };
         let steepest = [&a.surface, &b.surface].map(steepest);
         let chamfer = Chamfer { leg, steepest: steepest[0].max(steepest[1]) };
         let frame = self.contexts.get(site.context).frame;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Compiler, Site, kept};
+use super::{Compiler, Site, kept, measured};
 use crate::eval::code::{Built, snug};
 use crate::eval::support::box_under;
 use crate::eval::swell::Swell;
@@ -51,8 +51,8 @@ impl Compiler<'_> {
                 let inside = inner.next().unwrap_or(Bounds::ALL);
                 self.image(warp, context, &inside)
             }
-            solid::Node::Blend { operation: Operation::Union, operands, ball: Some(_), .. } => {
-                inner.fold(self.filling(operands, context, reach), |all, own| all.union(&own))
+            solid::Node::Blend { operation: Operation::Union, ball: Some(_), .. } => {
+                inner.fold(self.filling(solid, context, reach), |all, own| all.union(&own))
             }
             _ if is(Operation::Difference) => inner.next().unwrap_or(Bounds::ALL),
             _ if is(Operation::Intersection) => inner.fold(Bounds::ALL, |all, own| all.intersection(&own)),
@@ -63,12 +63,14 @@ impl Compiler<'_> {
 
     /// A box, in the frame of `context`, of where the value of what a fillet or chamfer adds between
     /// operands is above `-reach`: it is held to their hull, and falls as lengths do beyond it.
-    fn filling(&self, operands: &[Solid], context: u32, reach: f64) -> Bounds {
+    fn filling(&self, solid: &Solid, context: u32, reach: f64) -> Bounds {
         let context = self.contexts.get(context);
+        let Some(measured) = measured(solid) else { return Bounds::EMPTY };
         if context.moved.is_some() {
             return Bounds::ALL;
         }
         let of_operand = |operand: &Solid| kept(operand).map_or(Bounds::ALL, |programs| programs.bounds());
+        let operands = measured.operands(solid);
         let hull = operands.iter().map(of_operand).fold(Bounds::EMPTY, |all, own| all.union(&own));
         if hull.is_empty() { hull } else { snug(hull.inflate(reach / context.scale).transformed(&context.forward)) }
     }
