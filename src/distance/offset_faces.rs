@@ -13,6 +13,8 @@
 //! Source: W. Tiller and E. Hanson, *Offsets of Two-Dimensional Profiles* (1984), for offsets that
 //! are moved first and trimmed then.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3};
 
 use super::chart::Chart;
@@ -47,7 +49,7 @@ pub(super) const SMALL: f64 = 2.0;
 pub(super) const DEEPEST: usize = 32;
 
 /// So many pieces are looked at, or so many for each at first, no more, so many at a time.
-const MOST: usize = 1 << 18;
+const MOST: usize = 1 << 19;
 const OF_EACH: usize = 4;
 const AT_ONCE: usize = 1 << 12;
 
@@ -118,6 +120,34 @@ struct Whole {
     patch: Patch,
 }
 
+/// A piece that is at the level in none of its places, and which these are.
+struct Beside {
+    piece: Piece,
+    size: f64,
+    places: Range<usize>,
+}
+
+/// A way along a piece from one of its places to where it may be at the level.
+struct Lead {
+    /// Of the piece.
+    number: usize,
+    normal: DVec3,
+    /// It is no longer than this.
+    reach: f64,
+    from: DVec3,
+    at: DVec3,
+    slope: Slope,
+}
+
+impl Lead {
+    /// One step on, if it does not lead too far.
+    fn step(&mut self) -> bool {
+        let rise = self.slope.gradient.reject_from_normalized(self.normal);
+        self.at -= self.slope.value / rise.length_squared() * rise;
+        !self.at.is_nan() && self.at.distance(self.from) <= self.reach
+    }
+}
+
 impl Offset<'_> {
     /// The faces, and how far each is off; nothing if it takes too many pieces.
     pub(super) fn faces(&self, run: &Run) -> Result<Option<Vec<(Patch, f64)>>, Cancelled> {
@@ -178,7 +208,7 @@ impl Offset<'_> {
             ends.push(points.len());
         }
         let slopes = self.level.at(&points, run)?;
-        let (mut whole, mut partial, mut start) = (Vec::new(), Vec::new(), 0);
+        let (mut whole, mut partial, mut beside, mut start) = (Vec::new(), Vec::new(), Vec::new(), 0);
         for ((piece, size), end) in pieces.iter().zip(sizes).zip(ends) {
             let places = start..end;
             start = end;
@@ -204,24 +234,22 @@ impl Offset<'_> {
                     }
                 }
             } else if on == 0 {
-                let own = (&points[places.clone()], &slopes[places]);
-                match &found.known {
-                    Some(known)
-                        if size > SMALL * self.tolerance
-                            && self.has_narrow(chart(piece), piece, own, |p| {
-                                !known.is_within(p, SMALL * self.tolerance)
-                            }) =>
-                    {
-                        next.extend(piece.quarters())
-                    }
-                    None if self.has_narrow(chart(piece), piece, own, |_| true) => found.narrow.push(*piece),
-                    _ => {}
-                }
+                beside.push(Beside { piece: *piece, size, places });
             } else if size > self.cell {
                 next.extend(piece.quarters());
             } else {
                 let slopes = [places.end - 2, places.start + sides_of(count), places.start].map(|at| slopes[at]);
                 partial.push(Partial { piece: *piece, size, slopes, mostly: 2 * on > count });
+            }
+        }
+        let near = |p: DVec3| found.known.as_ref().is_none_or(|known| !known.is_within(p, SMALL * self.tolerance));
+        let asked: Vec<&Beside> =
+            beside.iter().filter(|own| found.known.is_none() || own.size > SMALL * self.tolerance).collect();
+        let narrow = self.narrow((charts, &asked), (&points, &slopes), near, run)?;
+        for own in asked.iter().zip(narrow).filter(|(_, is_narrow)| *is_narrow).map(|(own, _)| own) {
+            match found.known {
+                Some(_) => next.extend(own.piece.quarters()),
+                None => found.narrow.push(own.piece),
             }
         }
         self.trim((charts, &partial), (next, found), run)?;
@@ -270,36 +298,37 @@ impl Offset<'_> {
         most - least <= on.min(SLANT * size) && most.max(-least) <= on + self.slack
     }
 
-    /// Whether slopes along a piece lead from its places, none of which is at the level, to one
-    /// that is, and is asked for.
-    fn has_narrow(
+    /// Whether slopes along pieces lead from their places, none of which is at the level, to one that
+    /// is, and is asked for.
+    fn narrow(
         &self,
-        chart: &Chart,
-        piece: &Piece,
+        (charts, pieces): (&[Chart], &[&Beside]),
         (points, slopes): (&[DVec3], &[Slope]),
         is_asked: impl Fn(DVec3) -> bool,
-    ) -> bool {
-        let [a, b, c] = piece.corners.map(|at| chart.at(at));
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        let along = sides_of(points.len()) as f64;
-        let leads = |(from, slope): (&DVec3, &Slope)| {
-            let (mut p, mut slope) = (*from, *slope);
-            for _ in 0..STEPS {
-                let rise = slope.gradient.reject_from_normalized(normal);
-                p -= slope.value / rise.length_squared() * rise;
-                if p.is_nan() || p.distance(*from) > REACH * size / along {
-                    return false;
-                }
-                let (value, gradient) = self.level.program.gradient(p);
-                slope = Slope { value, gradient };
-                if self.is_on(value) {
-                    return is_asked(p);
+        run: &Run,
+    ) -> Result<Vec<bool>, Cancelled> {
+        let mut found = vec![false; pieces.len()];
+        let mut open = Vec::new();
+        for (number, Beside { piece, size, places }) in pieces.iter().enumerate() {
+            let [a, b, c] = piece.corners.map(|at| charts[piece.chart as usize].at(at));
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let reach = REACH * size / sides_of(places.len()) as f64;
+            let way = |at: usize| Lead { number, normal, reach, from: points[at], at: points[at], slope: slopes[at] };
+            open.extend(places.clone().map(way));
+        }
+        for _ in 0..STEPS {
+            open.retain_mut(|lead| !found[lead.number] && lead.step());
+            let places: Vec<DVec3> = open.iter().map(|lead| lead.at).collect();
+            for (lead, slope) in open.iter_mut().zip(self.level.at(&places, run)?) {
+                lead.slope = slope;
+                if self.is_on(slope.value) {
+                    found[lead.number] |= is_asked(lead.at);
+                    // It leads no farther.
+                    lead.reach = 0.0;
                 }
             }
-            false
-        };
-        points.iter().zip(slopes).any(leads)
+        }
+        Ok(found)
     }
 
     /// The patch of a piece.

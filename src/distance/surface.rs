@@ -44,6 +44,10 @@ const CELLS_A_LEAF: f64 = 500.0;
 /// tolerances.
 pub(super) const FEW: f64 = 5e-4;
 
+/// What is off by less than this part of a cell is so for other reasons: boxes about spots have been
+/// meshed in cells as small.
+const OF_CELL: f64 = 0.06;
+
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;
 
@@ -152,7 +156,8 @@ impl DistanceSource for FromMeshes {
                 run.report(1.0);
                 return Ok(found);
             }
-            let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= GROSS * tolerance;
+            let gross = (GROSS * tolerance).max(OF_CELL * cell);
+            let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= gross;
             let mut is_enough = false;
             if let Some(mut quilt) = Quilt::new(facets, &slopes, care, &to_sew)? {
                 mend(&mut quilt, &slopes, cell, tolerance, &to_sew)?;
@@ -195,7 +200,7 @@ impl DistanceSource for FromMeshes {
                 let smallest = cell * (4.0 * count / most).sqrt();
                 is_resigned = subject.thickness(&hidden).is_some_and(|thickness| 4.0 * thickness < smallest);
             }
-            let is_lacking = !is_enough && !hidden.is_empty();
+            let is_lacking = !is_enough && is_last && !hidden.is_empty();
             if is_lacking
                 && std::mem::take(&mut may_have_faces)
                 && let Some(found) = by_faces()?

@@ -10,11 +10,10 @@
 //! ```
 
 use glam::{DVec2, DVec3};
-use rvachev_num::jobs;
 
 use super::chart::Chart;
 use super::offset_faces::{DEEPEST, Found, Offset, Piece, SMALL};
-use crate::mesh::Slope;
+use crate::mesh::{Slope, Slopes};
 use crate::{Cancelled, Run};
 
 /// Where a face ends is found to this part of the tolerance.
@@ -45,6 +44,28 @@ struct Line {
     is_one: bool,
     /// Whether it is seen to be straight.
     is_long: bool,
+}
+
+/// The corners of a piece by their numbers, the one first that is alone on its side, and whether it
+/// is at the level.
+struct Corners {
+    numbers: [usize; 3],
+    is_one: bool,
+}
+
+/// A way from a place at the level to one that is not, of whose slope something is known at first.
+struct End<'a> {
+    chart: &'a Chart,
+    inner: DVec2,
+    outer: DVec2,
+    slope: Option<Slope>,
+    was_aimed: bool,
+}
+
+/// A place on a way that is asked, and whether a slope has led there.
+struct Step {
+    middle: DVec2,
+    is_aimed: bool,
 }
 
 /// What there is of a piece.
@@ -88,10 +109,7 @@ impl Offset<'_> {
         run: &Run,
     ) -> Result<(), Cancelled> {
         let chart = |own: &Partial| &charts[own.piece.chart as usize];
-        let trimmed = jobs::try_in_order(pieces.len(), |n| {
-            run.check()?;
-            Ok(self.trimmed(chart(&pieces[n]), &pieces[n]))
-        })?;
+        let trimmed = self.trimmed(charts, pieces, run)?;
         let mut points = Vec::new();
         for (own, trimmed) in pieces.iter().zip(&trimmed) {
             if let Trimmed::Along(line) = trimmed
@@ -129,57 +147,93 @@ impl Offset<'_> {
         Ok(())
     }
 
-    /// Where a piece is trimmed by its corners.
-    fn trimmed(&self, chart: &Chart, Partial { piece, slopes, .. }: &Partial) -> Trimmed {
-        let apart = |from: DVec2, to: DVec2| chart.at(from).distance(chart.at(to));
-        let on = slopes.map(|slope| self.is_on(slope.value));
-        let count = on.iter().filter(|own| **own).count();
-        if count == 0 || count == 3 {
-            return Trimmed::Unknown;
+    /// Where pieces are trimmed by their corners.
+    fn trimmed(&self, charts: &[Chart], pieces: &[Partial], run: &Run) -> Result<Vec<Trimmed>, Cancelled> {
+        let chart = |own: &Partial| &charts[own.piece.chart as usize];
+        let mut ends = Vec::new();
+        for own in pieces {
+            let Some(Corners { numbers: [a, b, c], is_one }) = self.corners(own) else { continue };
+            let ways = if is_one { [[a, b], [a, c]] } else { [[b, a], [c, a]] };
+            ends.extend(ways.map(|[inner, outer]| End {
+                chart: chart(own),
+                inner: own.piece.corners[inner],
+                outer: own.piece.corners[outer],
+                slope: Some(own.slopes[outer]),
+                was_aimed: false,
+            }));
         }
-        let is_one = count == 1;
-        // The corner that is alone on its side of the line.
-        let alone = (0..3).find(|k| on[*k] == is_one).unwrap_or(0);
-        let corners @ [a, b, c] = [0, 1, 2].map(|k| piece.corners[(alone + k) % 3]);
-        let [of_a, of_b, of_c] = [0, 1, 2].map(|k| slopes[(alone + k) % 3]);
-        let end = |inner: DVec2, outer: DVec2, slope: Slope| self.end(chart, [inner, outer], slope);
-        let ends @ [ab, ac] =
-            if is_one { [end(a, b, of_b), end(a, c, of_c)] } else { [end(b, a, of_a), end(c, a, of_a)] };
-        let width = if is_one { apart(a, ab).min(apart(a, ac)) } else { apart(b, ab).max(apart(c, ac)) };
-        if width < self.tolerance {
-            return Trimmed::Nothing;
-        }
-        Trimmed::Along(Line { corners, ends, is_one, is_long: apart(ab, ac) > SMALL * self.tolerance })
+        self.find(&mut ends, run)?;
+        let mut ends = ends.into_iter().map(|end| end.inner);
+        let along = |own: &Partial| {
+            let Some(Corners { numbers, is_one }) = self.corners(own) else { return Trimmed::Unknown };
+            let (Some(ab), Some(ac)) = (ends.next(), ends.next()) else { return Trimmed::Unknown };
+            let corners @ [a, b, c] = numbers.map(|k| own.piece.corners[k]);
+            let apart = |from: DVec2, to: DVec2| chart(own).at(from).distance(chart(own).at(to));
+            let width = if is_one { apart(a, ab).min(apart(a, ac)) } else { apart(b, ab).max(apart(c, ac)) };
+            if width < self.tolerance {
+                return Trimmed::Nothing;
+            }
+            let is_long = apart(ab, ac) > SMALL * self.tolerance;
+            Trimmed::Along(Line { corners, ends: [ab, ac], is_one, is_long })
+        };
+        Ok(pieces.iter().map(along).collect())
     }
 
-    /// The last place at the level on the way from one that is to one that is not, whose slope is
-    /// known.
-    fn end(&self, chart: &Chart, [mut inner, mut outer]: [DVec2; 2], slope: Slope) -> DVec2 {
-        let (mut slope, mut was_aimed) = (Some(slope), false);
+    /// The corners of a piece, the one first that is alone on its side of the level, if there is one.
+    fn corners(&self, Partial { slopes, .. }: &Partial) -> Option<Corners> {
+        let on = slopes.map(|slope| self.is_on(slope.value));
+        let count = on.iter().filter(|own| **own).count();
+        let is_one = count == 1;
+        let alone = (0..3).find(|k| on[*k] == is_one).filter(|_| count == 1 || count == 2)?;
+        Some(Corners { numbers: [0, 1, 2].map(|k| (alone + k) % 3), is_one })
+    }
+
+    /// Finds the last places at the level on ways, all of them step by step.
+    fn find(&self, ends: &mut [End<'_>], run: &Run) -> Result<(), Cancelled> {
+        let level = Slopes { precision: RIM * self.tolerance, ..*self.level };
+        let mut open: Vec<usize> = (0..ends.len()).collect();
         for _ in 0..DEEPEST {
-            let way = chart.at(inner) - chart.at(outer);
-            let width = way.length();
-            if width <= RIM * self.tolerance {
+            let mut asked = Vec::with_capacity(open.len());
+            open.retain(|n| match self.next(&mut ends[*n]) {
+                Some(step) => {
+                    asked.push(step);
+                    true
+                }
+                None => false,
+            });
+            if open.is_empty() {
                 break;
             }
-            // A little within it.
-            let aimed = slope.take().map(|Slope { value, gradient }| {
-                let falls = -value.signum() * gradient.dot(way);
-                (value.abs() - self.slightest()) / falls + 0.5 * RIM * self.tolerance / width
-            });
-            let aimed = aimed.filter(|part| *part > 0.0 && *part < 1.0);
-            // Once a place is at the level the next one is asked that is not to be.
-            let part = aimed.unwrap_or(if was_aimed { 1.0 - RIM * self.tolerance / width } else { 0.5 });
-            let middle = outer.lerp(inner, part);
-            let (value, gradient) = self.level.program.gradient(chart.at(middle));
-            let is_on = self.is_on(value);
-            if is_on {
-                inner = middle;
-            } else {
-                (outer, slope) = (middle, aimed.is_none().then_some(Slope { value, gradient }));
+            let places: Vec<DVec3> = open.iter().zip(&asked).map(|(n, step)| ends[*n].chart.at(step.middle)).collect();
+            let slopes = level.at(&places, run)?;
+            for ((n, Step { middle, is_aimed }), slope) in open.iter().zip(asked).zip(slopes) {
+                let (end, is_on) = (&mut ends[*n], self.is_on(slope.value));
+                if is_on {
+                    end.inner = middle;
+                } else {
+                    (end.outer, end.slope) = (middle, (!is_aimed).then_some(slope));
+                }
+                end.was_aimed = is_on && is_aimed;
             }
-            was_aimed = is_on && aimed.is_some();
         }
-        inner
+        Ok(())
+    }
+
+    /// The place to ask next, if it is not known well enough.
+    fn next(&self, end: &mut End<'_>) -> Option<Step> {
+        let way = end.chart.at(end.inner) - end.chart.at(end.outer);
+        let width = way.length();
+        if width <= RIM * self.tolerance {
+            return None;
+        }
+        // A little within it.
+        let aimed = end.slope.take().map(|Slope { value, gradient }| {
+            let falls = -value.signum() * gradient.dot(way);
+            (value.abs() - self.slightest()) / falls + 0.5 * RIM * self.tolerance / width
+        });
+        let aimed = aimed.filter(|part| *part > 0.0 && *part < 1.0);
+        // Once a place is at the level the next one is asked that is not to be.
+        let part = aimed.unwrap_or(if end.was_aimed { 1.0 - RIM * self.tolerance / width } else { 0.5 });
+        Some(Step { middle: end.outer.lerp(end.inner, part), is_aimed: aimed.is_some() })
     }
 }

@@ -313,7 +313,8 @@ impl Near {
             for &second in order[at + 1..].iter().take_while(|other| around[**other].min.x <= around[first].max.x) {
                 let mut bounds = around[first].intersection(&around[second]).intersection(&inside);
                 if matches!(blend, Blend::Fillet { .. }) && !fades {
-                    bounds = bounds.intersection(&between_convex([first, second].map(|i| (&operands[i], boxes[i])), radius));
+                    bounds =
+                        bounds.intersection(&between_convex([first, second].map(|i| (&operands[i], boxes[i])), radius));
                 }
                 if !bounds.is_empty() {
                     between.push(bounds);

@@ -23,6 +23,10 @@ use rvachev_num::symbol::Symbol;
 const TURN: f64 = 1e-4;
 const TURN_OF_LANES: f64 = 1e-2;
 
+/// T of planes changes by 1 per length unit, and by less than this where balls roll along both
+/// operands that are as large as the leg.
+const STEEPEST: f64 = 4.0;
+
 /// A value and its gradient.
 pub(super) type Sample = (f64, DVec3);
 
@@ -211,6 +215,11 @@ impl AnyField for Bevel {
             found & self.operands[i].rises(zone, &turned)
         };
         (0..2).fold(found, of_operand)
+    }
+
+    /// Where operands' normals turn steadily: T jumps where they do.
+    fn slope_bound(&self) -> Option<f64> {
+        self.operands.iter().all(|operand| operand.has_gentle_leaves()).then_some(STEEPEST)
     }
 
     fn steepest(&self, _zone: &Zone) -> f64 {

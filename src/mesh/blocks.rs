@@ -62,6 +62,17 @@ impl Blocks {
         Ok(Blocks { cells, programs: Programs { numbers, all: found.programs }, exact: Vec::new() })
     }
 
+    /// Those whose numbers are chosen.
+    pub(super) fn chosen(&self, is_chosen: impl Fn(usize) -> bool) -> Blocks {
+        let numbers = || (0..self.cells.len()).filter(|number| is_chosen(*number));
+        let programs = Programs {
+            numbers: numbers().map(|number| self.programs.numbers[number]).collect(),
+            all: self.programs.all.clone(),
+        };
+        let exact = if self.exact.is_empty() { Vec::new() } else { numbers().map(|n| self.exact[n]).collect() };
+        Blocks { cells: numbers().map(|number| self.cells[number]).collect(), programs, exact }
+    }
+
     /// Those of the halved lattice, given with it, in the blocks whose numbers along the axes are
     /// chosen.
     pub(super) fn halves(&self, lattice: &Lattice, is_chosen: impl Fn([u32; 3]) -> bool) -> Blocks {

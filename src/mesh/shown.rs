@@ -98,33 +98,35 @@ impl Subject<'_> {
         let lattice = Lattice::new(&self.bounds, CellSize::Length(cell))?;
         let [to_find, to_search] = run.stages([0.2, 0.8]);
         let blocks = Blocks::find(self.program, &lattice, &to_find)?;
-        if self.program.has_gentle_leaves() {
-            // What cells beside others hide as well is of no matter where nothing is hidden by
-            // itself.
-            let alone = self.crossed(&blocks, &lattice, Beside::Nothing, &to_search)?;
-            return Ok(if alone.is_empty() {
-                alone
-            } else {
-                self.crossed(&blocks, &lattice, Beside::All, &to_search)?
-            });
+        let is_gentle = |number: usize| blocks.programs.of(number).has_gentle_leaves();
+        let [gentle, other] = [true, false].map(|wanted| blocks.chosen(|number| is_gentle(number) == wanted));
+        let part = gentle.cells.len() as f64 / blocks.cells.len().max(1) as f64;
+        let [to_lead, to_halve] = to_search.stages([part, 1.0 - part]);
+        // What cells beside others hide as well is of no matter where nothing is hidden by itself.
+        let mut found = self.crossed(&gentle, &lattice, Beside::Nothing, &to_lead)?;
+        if !found.is_empty() {
+            found = self.crossed(&gentle, &lattice, Beside::All, &to_lead)?;
         }
         // What a mesh says that it may have lost is not all: in blocks with a crossing it looks for
         // little.
-        let suspects = unresolved_cells(&blocks, (&lattice, self.bounds), Among::OneSided, &to_search)?;
+        let suspects = unresolved_cells(&other, (&lattice, self.bounds), Among::OneSided, &to_halve)?;
         let of_block = |Unresolved { block, cells }: Unresolved| {
             let at = move |within: &[usize; 3]| [0, 1, 2].map(|axis| block[axis] + within[axis] as u32);
             let cells: Vec<[u32; 3]> = cells.iter().map(at).collect();
             cells.into_iter().map(|cell| Hidden { cell: lattice.region(cell, 1), is_sure: false })
         };
-        Ok(suspects.into_iter().flat_map(of_block).collect())
+        found.extend(suspects.into_iter().flat_map(of_block));
+        Ok(found)
     }
 
     /// The cells with all nodes on one side that have the surface in them: of values of which it is
     /// known how much they change as points move, those at the nodes tell where to look, and lead
     /// there.
     fn crossed(&self, blocks: &Blocks, lattice: &Lattice, beside: Beside, run: &Run) -> Result<Vec<Hidden>, Cancelled> {
-        let slope = self.program.slope_within(&self.bounds);
-        let sampler = SolidSampler::new(lattice, blocks, self.bounds, FAR[2] * slope.max(1.0));
+        let slope_of =
+            |number: usize| blocks.programs.of(number).slope_within(&lattice.region(blocks.cells[number], BLOCK));
+        let steepest = (0..blocks.cells.len()).map(slope_of).fold(1.0, f64::max);
+        let sampler = SolidSampler::new(lattice, blocks, self.bounds, FAR[2] * steepest);
         // One that is alone is enough to know that there are some.
         let is_enough = AtomicBool::new(false);
         let of_block = |scratch: &mut Scratch, number: usize| {
@@ -133,8 +135,7 @@ impl Subject<'_> {
             if is_enough.load(Ordering::Relaxed) {
                 return Ok(Vec::new());
             }
-            let slope = blocks.programs.of(number).slope_within(&lattice.region(block, BLOCK));
-            let most = slope * lattice.step();
+            let most = slope_of(number) * lattice.step();
             let mut values = [0.0; NODES];
             scratch.forget();
             sampler.nodes(scratch, number, block, &mut values);
