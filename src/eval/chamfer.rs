@@ -128,9 +128,21 @@ impl Chamfer {
         (own(0) + own(1)) / m + along * turning
     }
 
+    /// The most that T is where the operands have these values, whatever their normals are: with
+    /// 2ψ the angle between these, s = X + Y and m = 2 cos ψ it is (s + l·sin 2ψ)/m.
+    pub(super) fn most(self, values: [Interval; 2]) -> f64 {
+        let [x, y] = values.map(Interval::hi);
+        if x > 0.0 || y > 0.0 {
+            return VALUE_LIMIT;
+        }
+        // Distances are no less than values by the steepest slope.
+        let beyond = self.leg + (x + y) / self.steepest;
+        if beyond < 0.0 { 0.5 * beyond } else { self.leg }
+    }
+
     /// T where the operands have these values and gradients.
     pub(super) fn range(self, values: [Interval; 2], gradients: [[Interval; 3]; 2]) -> Interval {
-        let everything = Interval::new(f64::NEG_INFINITY, VALUE_LIMIT);
+        let everything = Interval::new(f64::NEG_INFINITY, self.most(values));
         let lengths = gradients.map(length);
         if !lengths.iter().all(|length| length.lo() >= LEVEL) {
             return everything;

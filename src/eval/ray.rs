@@ -80,6 +80,13 @@ const ASK: f64 = 0.2;
 /// unbounded deformed solid winds about the ray without end, the ray comes to an end all the same.
 const PATIENCE: usize = 1 << 12;
 
+/// In pictures the rest of a ray is [marched](march) after so many pieces, where values that are
+/// searched for have wide ranges, and it is known how steep they are.
+const ENOUGH: usize = 8;
+
+/// A marched ray makes no shorter steps than so many of the closest crossings told apart.
+const STRIDE: f64 = 4.0;
+
 /// Values nearer to 0, in proportion to the solid's size or to the values about it, may be 0.
 const ROUNDING: f64 = 1e-15;
 
@@ -214,6 +221,8 @@ fn crossing(ray: &Ray<'_>, start: f64, grazes: &mut bool) -> Option<Hit> {
     }
     pieces.push(Piece::new(program, start, (far, values[1]), is_inside));
     pieces.reverse();
+    let is_marched = care == Care::Picture && !program.is_steady();
+    let steepest = if is_marched { program.steepest_leaf() } else { None };
     let mut count = 0;
     while let Some(mut piece) = pieces.pop() {
         count += 1;
@@ -221,6 +230,11 @@ fn crossing(ray: &Ray<'_>, start: f64, grazes: &mut bool) -> Option<Hit> {
             shortest *= 2.0;
         }
         let [t0, t1] = piece.ends;
+        if let (true, Some(slope)) = (count == ENOUGH, steepest) {
+            let steps = [STRIDE * closest, 1.0 / (slope * direction.length())];
+            let [from, to] = march(&|t| program.value(at(t)), [t0, far], steps, is_inside)?;
+            return Some(hit_between(program, &at, [from, to], doubt, care.precision() * size));
+        }
         let [from, to] = within_reach(&piece);
         let short = if piece.inside[0] == piece.inside[1] { shortest } else { shortest.max(closest) };
         let is_settled = one_signed(piece.slopes);
@@ -307,6 +321,27 @@ fn crossing(ray: &Ray<'_>, start: f64, grazes: &mut bool) -> Option<Hit> {
             inside: [piece.inside[0], is_inside(value)],
             ..piece
         });
+    }
+    None
+}
+
+/// The step of a ray in which it crosses the surface first: of steps as long as a value over the
+/// steepest slope, and no shorter than the first of `steps`; the other is one over that slope.
+fn march(
+    value: &impl Fn(f64) -> f64,
+    [mut t, far]: [f64; 2],
+    [shortest, by_slope]: [f64; 2],
+    is_inside: impl Fn(f64) -> bool,
+) -> Option<[f64; 2]> {
+    let mut here = value(t);
+    let was_inside = is_inside(here);
+    while t < far {
+        let next = (t + (here.abs() * by_slope).max(shortest)).min(far);
+        here = value(next);
+        if is_inside(here) != was_inside {
+            return Some([t, next]);
+        }
+        t = next;
     }
     None
 }

@@ -54,6 +54,11 @@ impl EmptyBalls for Fill {
 }
 
 impl Program {
+    /// Whether it is nothing but a fillet.
+    pub(super) fn is_rolled_leaf(&self) -> bool {
+        self.only_plain_leaf().is_some_and(|(leaf, _)| leaf.field.empty_balls().is_some())
+    }
+
     /// Whether it is a leaf that tells balls in which no value is above 0, in place but for a map
     /// of lengths; and how steep its value is at most.
     pub(crate) fn rolled(&self) -> Option<f64> {

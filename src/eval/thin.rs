@@ -26,10 +26,15 @@ impl Program {
         self.slope_of_leaves().is_some()
     }
 
-    /// Whether the value changes by at most 1 per length unit: that of its leaves does, and none is
-    /// deformed.
+    /// By how much the value changes per length unit at most, if that is known of all leaves and none
+    /// is deformed.
+    pub(crate) fn steepest_leaf(&self) -> Option<f64> {
+        self.slope_of_leaves().filter(|_| self.is_unbent())
+    }
+
+    /// Whether the value changes by at most 1 per length unit.
     pub(crate) fn is_gentle(&self) -> bool {
-        self.slope_of_leaves().is_some_and(|slope| slope <= 1.0) && self.is_unbent()
+        self.steepest_leaf().is_some_and(|slope| slope <= 1.0)
     }
 
     fn is_unbent(&self) -> bool {
@@ -54,9 +59,9 @@ impl Program {
     /// By how much the value of gentle leaves changes per length unit in a box at most: by more
     /// than 1 where they are deformed. Of others it is not told.
     pub(crate) fn slope_within(&self, region: &Bounds) -> f64 {
-        match self.slope_of_leaves() {
-            Some(slope) if self.is_unbent() => slope,
-            Some(_) => self.steepest(region),
+        match self.steepest_leaf() {
+            Some(slope) => slope,
+            None if self.has_gentle_leaves() => self.steepest(region),
             None => f64::INFINITY,
         }
     }

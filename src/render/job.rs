@@ -131,6 +131,8 @@ impl<'a> Job<'a> {
         let reach = cells.reach();
         let size = reach.longest_side();
         let outward = |v: f64, by: f64| (v + by * (1e-6 * v.abs() + 1e-12)) as f32;
+        // Where the ranges of slopes tell nothing, leaves may.
+        let steepest = cell.program.steepest_leaf().map_or(f32::INFINITY, |slope| outward(slope, 1.0));
         Job {
             cell,
             rays,
@@ -141,8 +143,8 @@ impl<'a> Job<'a> {
             bend: cell.bend,
             owner: cell.program.only_leaf(),
             known: slopes,
-            least: outward(slopes.value.lo(), -1.0),
-            most: outward(slopes.value.hi(), 1.0),
+            least: outward(slopes.value.lo(), -1.0).max(-steepest),
+            most: outward(slopes.value.hi(), 1.0).min(steepest),
             doubt: tape.roundoff() as f32,
             last_step: LAST_STEP * cell.side() as f32,
             close: (CLOSE * size).max(DOUBTS * tape.roundoff()) as f32,

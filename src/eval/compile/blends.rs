@@ -149,14 +149,17 @@ impl Compiler<'_> {
     }
 
     /// The faces between all parts of two operands, joined as these are. That of a union by itself
-    /// goes by the part that is nearest, and jumps where another one is.
+    /// goes by the part that is nearest, and jumps where another one is. Fillets of operands have
+    /// none: beyond their joints their values are no distances.
     fn faces(&mut self, site: Site<'_>, of: &Faces, pair: [Program; 2]) -> Built {
         let choices = |side: usize| pair[side].choices().map(|(op, parts)| (side, op, parts));
         let Some((side, op, parts)) = choices(0).or_else(|| choices(1)) else {
             return self.face(site, of, pair);
         };
         let is_union = op.flip_if(of.signs[side] < 0.0) == Op::Or;
+        let is_leaf = parts.iter().any(|part| !part.is_rolled_leaf());
         let faces: Vec<Built> = (parts.into_iter())
+            .filter(|part| !is_leaf || !part.is_rolled_leaf())
             .map(|part| {
                 let mut pair = pair.clone();
                 pair[side] = part;
@@ -201,5 +204,5 @@ fn margin(solid: &Solid, measured: &Measured, radius: f64) -> f64 {
 
 /// How steep the values of a solid are taken to be.
 fn steepest(program: &Program) -> f64 {
-    if program.is_gentle() { 1.0 } else { 4.0 }
+    program.steepest_leaf().map_or(4.0, |slope| slope.max(1.0))
 }
