@@ -159,6 +159,8 @@
 //! * If A and B are convex the result is that closing.
 //! * An operand's own concave edges stay as they are away from the joint. Close to it, where the
 //!   ball touches the other operand as well, they are filled; the filling fades out along them.
+//! * What an operand has farther than 4 r from the others does not count. So blends one after the
+//!   other that are so far apart, of whatever radii, are each measured by themselves.
 //! * Faces that are flush stay flush, exactly: there is no edge between them, and nothing is added.
 //! * At the end of a notch between two blocks the ball comes over the edge from above as well, so
 //!   the end of the fillet dips a little below the flush faces. So does the closing.
@@ -304,7 +306,7 @@
 //! [`Solid::with_tolerance`](crate::Solid::with_tolerance) asks for more or less. Rods, holes and
 //! ribs that are convex leaves are found however thin they are, or told of by it; of other leaves,
 //! as a thin torus or a swept profile, what is thinner than a quarter of a cell may be missed. The
-//! tolerances of lengths of lengths, as of fillets of several radii one after the other, add up.
+//! tolerances of lengths of lengths, as of fillets of several radii that are near each other, add up.
 //!
 //! Faces that a length leaves where they are are not measured: the outer face of a shell, the faces
 //! that the ball of an opening or closing touches, flush faces of a blend. They are the solid's

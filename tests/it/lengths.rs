@@ -6,6 +6,7 @@
 mod closed;
 mod fillets;
 mod laws;
+mod local;
 mod nested;
 mod nothing;
 mod plane;
