@@ -298,8 +298,8 @@ impl Offset<'_> {
         most - least <= on.min(SLANT * size) && most.max(-least) <= on + self.slack
     }
 
-    /// Whether slopes along pieces lead from their places, none of which is at the level, to one that
-    /// is, and is asked for.
+    /// Whether slopes along pieces lead from their places, none of which is at the level, to one
+    /// that is, and is asked for.
     fn narrow(
         &self,
         (charts, pieces): (&[Chart], &[&Beside]),

@@ -41,7 +41,7 @@ const CELLS: f64 = 4e4;
 const CELLS_A_LEAF: f64 = 500.0;
 
 /// Cells are halved while more than this part of the surface is off, or a patch by [`GROSS`]
-/// tolerances.
+/// tolerances and by [`OF_CELL`].
 pub(super) const FEW: f64 = 5e-4;
 
 /// What is off by less than this part of a cell is so for other reasons: boxes about spots have been

@@ -179,7 +179,8 @@ impl Offset<'_> {
         Ok(pieces.iter().map(along).collect())
     }
 
-    /// The corners of a piece, the one first that is alone on its side of the level, if there is one.
+    /// The corners of a piece, the one first that is alone on its side of the level, if there is
+    /// one.
     fn corners(&self, Partial { slopes, .. }: &Partial) -> Option<Corners> {
         let on = slopes.map(|slope| self.is_on(slope.value));
         let count = on.iter().filter(|own| **own).count();

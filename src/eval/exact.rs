@@ -20,11 +20,10 @@
 //! R-functions count as min and max, which is what lengths make of them. Of all else nothing is
 //! known: deformations, blends, repetitions in a deformed space.
 
-use std::collections::HashMap;
-
 use glam::DAffine3;
 
 use super::context::is_similarity;
+use super::known::Known;
 use crate::solid::{Length, Node, Operation, Sweep};
 use crate::{Angle, Cancelled, Caps, Extrusion, RFunction, Run, Solid};
 
@@ -56,42 +55,24 @@ impl Exact {
     }
 }
 
-/// What is known of the nodes of a graph.
-#[derive(Default)]
-pub(super) struct Exactness(HashMap<usize, Exact>);
+/// Where the values of the nodes of a graph are distances.
+pub(super) type Exactness = Known<Exact>;
 
 impl Exactness {
-    /// Finds it out for a solid and all that it is made of, operands first. Leaves are prepared on
-    /// the way.
+    /// Finds it out for a solid and all that it is made of. Leaves are prepared on the way.
     pub(super) fn add(&mut self, root: &Solid, run: &Run) -> Result<(), Cancelled> {
-        let mut pending = vec![(root, false)];
-        while let Some((solid, is_open)) = pending.pop() {
-            run.check()?;
-            if self.0.contains_key(&solid.address()) {
-                continue;
+        let found = |known: &Exactness, solid: &Solid| {
+            if let Node::Leaf(field) = solid.node() {
+                field.prepare(run)?;
             }
-            if is_open {
-                if let Node::Leaf(field) = solid.node() {
-                    field.prepare(run)?;
-                }
-                let found = self.found(solid);
-                self.0.insert(solid.address(), found);
-            } else {
-                pending.push((solid, true));
-                pending.extend(solid.node().parts().iter().chain(solid.node().ball()).map(|part| (part, false)));
-            }
-        }
-        Ok(())
-    }
-
-    /// The number of nodes.
-    pub(super) fn len(&self) -> usize {
-        self.0.len()
+            Ok(known.found(solid))
+        };
+        self.find(root, |solid| solid.node().parts().iter().chain(solid.node().ball()), found, run)
     }
 
     /// Where the value of a solid is a distance.
     pub(super) fn of(&self, solid: &Solid) -> Exact {
-        self.0.get(&solid.address()).copied().unwrap_or(Exact::NEITHER)
+        self.get(solid).copied().unwrap_or(Exact::NEITHER)
     }
 
     /// Whether a length is a matter of its operand's own value.

@@ -13,19 +13,16 @@
 //! 4r from one of them has nothing to do with it, nor does a fillet between others fade away as
 //! far as that.
 
-use std::collections::HashMap;
-
 use glam::DAffine3;
 
 use super::apart::{Near, far, is_blended, measured};
+use super::known::Known;
 use super::support::box_under;
 use crate::solid::{Length, Node, Operation, blended};
 use crate::{Bounds, Cancelled, RFunction, Run, Solid};
 
-/// Boxes of nodes in their own coordinates, infinite where their parts do not tell. What they are
-/// known of is held by who asks.
-#[derive(Default)]
-pub(super) struct Boxes(HashMap<usize, Bounds>);
+/// Boxes of nodes in their own coordinates, infinite where their parts do not tell.
+pub(super) type Boxes = Known<Bounds>;
 
 impl Boxes {
     /// A blend with what of its operands is near the joint, itself if that is all; nothing where
@@ -34,7 +31,7 @@ impl Boxes {
         let Node::Blend { operation, blend, operands, tolerance, ball: Some(_) } = solid.node() else {
             return Ok(None);
         };
-        self.add(solid, run)?;
+        self.find(solid, |solid| solid.node().parts(), |known, solid| Ok(known.found(solid)), run)?;
         let boxes: Vec<Bounds> = operands.iter().map(|operand| self.of(operand).inflate(far(*blend))).collect();
         let sums = |boxes: &mut dyn Iterator<Item = &Bounds>| -> Vec<Bounds> {
             let add = |all: &mut Bounds, own: &Bounds| Some(std::mem::replace(all, all.union(own)));
@@ -54,26 +51,7 @@ impl Boxes {
     }
 
     fn of(&self, solid: &Solid) -> Bounds {
-        self.0.get(&solid.address()).copied().unwrap_or(Bounds::ALL)
-    }
-
-    /// Finds the boxes of a solid and of what it is made of, operands first.
-    fn add(&mut self, root: &Solid, run: &Run) -> Result<(), Cancelled> {
-        let mut pending = vec![(root, false)];
-        while let Some((solid, is_open)) = pending.pop() {
-            run.check()?;
-            if self.0.contains_key(&solid.address()) {
-                continue;
-            }
-            if is_open {
-                let found = self.found(solid);
-                self.0.insert(solid.address(), found);
-            } else {
-                pending.push((solid, true));
-                pending.extend(solid.node().parts().iter().map(|part| (part, false)));
-            }
-        }
-        Ok(())
+        self.get(solid).copied().unwrap_or(Bounds::ALL)
     }
 
     fn found(&self, solid: &Solid) -> Bounds {

@@ -34,6 +34,7 @@ mod flatten;
 mod flush;
 mod hierarchy;
 mod joint;
+mod known;
 mod layers;
 mod list;
 mod local;

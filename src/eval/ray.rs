@@ -4,6 +4,9 @@
 //! sign, there is no crossing. Where the slope along the ray has one sign, there is one
 //! crossing if the ends differ in sign and none if they agree; bracketing finds it. Else what
 //! the values at the ends and the slopes leave of the piece is halved, the nearer half first.
+//!
+//! Rays of pictures are less certain: where ranges stay wide they are marched, in steps that the
+//! leaves' slopes allow, and what is thinner than the shortest of these may be missed.
 
 use glam::DVec3;
 use rvachev_num::order;

@@ -18,7 +18,7 @@
 //! in single precision and steps in double precision (`exact`) find the crossing. Signs of values
 //! within the rounding error of single precision are looked up in double precision; a ray that
 //! takes too many steps, or of whose slopes nothing is known, is divided by intervals
-//! (`eval::first_hit`).
+//! (`eval::first_hit`). Bounds on the slope are those of its range in the cell, or of the leaves.
 
 use glam::{DVec3, Vec3};
 

@@ -28,6 +28,12 @@ fn blends_that_are_apart_do_not_count_for_each_other() -> Outcome {
             plate.union_with(pin(0.4, right), fillet(0.31)),
         ),
         (
+            // Their fillets end a radius from them, and are 4.4 radii of the other pin's fillet apart.
+            "pins beside each other",
+            plate.union_with(pin(0.5, [1.98, -0.2, 0.0]), fillet(0.3)).union_with(pin(0.4, right), fillet(0.301)),
+            plate.union_with(pin(0.4, right), fillet(0.301)),
+        ),
+        (
             "holes",
             rest(&plate.difference_with(pin(0.5, left), fillet(0.3))).difference_with(pin(0.4, right), fillet(0.25)),
             plate.difference_with(pin(0.4, right), fillet(0.25)),
@@ -112,11 +118,12 @@ fn chamfers_of_filleted_operands_have_no_fins() -> Outcome {
     let (post, radius) = (Solid::cylinder(2.5, 18.5).translate([0.0, -13.0, 7.25]), 3.0);
     let lying = Solid::cylinder(6.5, 14.5).rotate_x(deg(90.0)).translate([-4.0, -7.0, 5.9]);
     let both = plate.union_with(post, fillet(radius)).union_with(lying, Blend::Chamfer { leg: 1.5 });
-    for turn in -5..=5 {
-        let angle = 1.5 * PI + 0.03 * f64::from(turn);
-        for (out, up) in (1..8).flat_map(|out| (0..120).map(move |up| (f64::from(out), f64::from(up)))) {
-            let r = 2.5 + 0.1 * out;
-            let p = DVec3::new(r * angle.cos(), r * angle.sin() - 13.0, 2.1 + radius + 0.1 * up);
+    for turn in -30..=30 {
+        let angle = 1.5 * PI + 0.01 * f64::from(turn);
+        for (out, up) in [0.03, 0.06, 0.1, 0.2].into_iter().flat_map(|out| (0..240).map(move |up| (out, f64::from(up))))
+        {
+            let r = 2.5 + out;
+            let p = DVec3::new(r * angle.cos(), r * angle.sin() - 13.0, 2.1 + radius + 0.05 * up);
             assert!(!both.contains(p)?, "a fin at {p}");
         }
     }
