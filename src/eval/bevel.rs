@@ -1,11 +1,16 @@
 //! The face of a chamfer as a leaf: positive where it adds material to a union.
 //!
 //! ```text
-//!     min(T, x + l', y + l')      T = 0 the plane across the edge, x and y the operands' values
+//!     min(max(T, x, y), x + l', y + l')   T = 0 the plane across the edge, x and y the operands' values
+//!
 //! ```
 //!
+//! The faces of an operand's parts are joined as these are, and so are those of a leaf's walls. In an
+//! intersection of walls A and B, (A | b) & (B | b) with their faces, each holds what A or B does: so
+//! beside A the face of B takes nothing away, and beyond both the two meet in a mitre.
+//!
 //! T is told by the operands' values and slopes ([`Chamfer`]). It is negative where an operand is
-//! farther away than the leg, which the other two terms say as well, and over whole boxes.
+//! farther away than the leg, which the last two terms say as well, and over whole boxes.
 
 use std::sync::Arc;
 
@@ -60,18 +65,20 @@ impl Bevel {
         })
     }
 
-    /// The least of the terms, and which operand's it is, if it is one's.
-    fn least(&self, height: f64, here: [Sample; 2]) -> (f64, Option<usize>) {
-        let near = here.map(|(value, _)| value + self.chamfer.reach());
-        let which = if near[0] <= near[1] { 0 } else { 1 };
-        if near[which] < height { (near[which], Some(which)) } else { (height.max(-VALUE_LIMIT), None) }
+    /// The value of the terms, and which operand's it is, if it is one's.
+    fn chosen(&self, height: f64, here: [Sample; 2]) -> (f64, Option<usize>) {
+        let values = here.map(|(value, _)| value);
+        let (low, high) = if values[0] <= values[1] { (0, 1) } else { (1, 0) };
+        let (value, which) = if values[high] > height { (values[high], Some(high)) } else { (height, None) };
+        let near = values[low] + self.chamfer.reach();
+        if near < value { (near, Some(low)) } else { (value.max(-VALUE_LIMIT), which) }
     }
 
     /// Value and gradient.
     fn at(&self, p: DVec3) -> Sample {
         let here = self.samples(p);
         let parts = Parts::of(here);
-        match (self.least(self.chamfer.height(parts.as_ref()), here), parts) {
+        match (self.chosen(self.chamfer.height(parts.as_ref()), here), parts) {
             ((value, Some(which)), _) => (value, here[which].1),
             ((value, None), None) => (value, DVec3::ZERO),
             ((value, None), Some(parts)) => {
@@ -85,7 +92,7 @@ impl Bevel {
 
     fn held(&self, height: Interval, values: [Interval; 2]) -> Interval {
         let reach = Interval::point(self.chamfer.reach());
-        height.min(values[0] + reach).min(values[1] + reach)
+        height.max(values[0]).max(values[1]).min(values[0] + reach).min(values[1] + reach)
     }
 
     /// What is known of T over a zone, by the operands' values there, and of their slopes and its
@@ -115,7 +122,7 @@ impl Bevel {
             for i in 0..local.count() {
                 let sides = here.each_ref().map(|side| side.at(i));
                 let parts = Parts::of(sides);
-                let (value, which) = self.least(self.chamfer.height(parts.as_ref()), sides);
+                let (value, which) = self.chosen(self.chamfer.height(parts.as_ref()), sides);
                 out.set(i, (value, which.map_or(DVec3::ZERO, |which| sides[which].1)));
                 if let (true, None, Some(parts)) = (is_steep, which, parts) {
                     faces.push((i, parts));
@@ -166,7 +173,7 @@ impl AnyField for Bevel {
 
     fn value(&self, p: [f64; 3]) -> f64 {
         let here = self.samples(DVec3::from_array(p));
-        self.least(self.chamfer.height(Parts::of(here).as_ref()), here).0
+        self.chosen(self.chamfer.height(Parts::of(here).as_ref()), here).0
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
@@ -180,7 +187,7 @@ impl AnyField for Bevel {
         let Face { height, slopes, sides } = self.face(&zone, self.ranges(&zone));
         let [x, y] = sides.map(|side| chained(side.v, side.d, p));
         let reach = Dual::constant(Interval::point(self.chamfer.reach()));
-        chained(height, slopes, p).min(x + reach).min(y + reach)
+        chained(height, slopes, p).max(x).max(y).min(x + reach).min(y + reach)
     }
 
     fn convex(&self) -> bool {
@@ -206,9 +213,11 @@ impl AnyField for Bevel {
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         let values = self.ranges(zone);
         let face = self.face(zone, values);
-        let found = bits(ways, |way| way.is_rise(face.slopes));
+        let most = face.height.max(values[0]).max(values[1]);
+        let found = if face.height.hi() < most.lo() { u8::MAX } else { bits(ways, |way| way.is_rise(face.slopes)) };
         let of_operand = |found: u8, i: usize| {
-            if found == 0 || values[i].lo() + self.chamfer.reach() > face.height.hi() {
+            let is_least = values[i].lo() + self.chamfer.reach() <= most.hi();
+            if found == 0 || !is_least && values[i].hi() < most.lo() {
                 return found;
             }
             let turned: Vec<Way> = ways.iter().map(|way| way.flip_if(self.signs[i] < 0.0)).collect();

@@ -251,6 +251,20 @@ impl Program {
         Some((op, self.list(node).iter().map(part).collect()))
     }
 
+    /// The same of a leaf that has edges of its own: what it is an intersection of.
+    pub(super) fn walls(&self) -> Option<(Op, Vec<Program>)> {
+        let [Node { kind: Kind::Leaf(leaf), .. }] = self.nodes[..] else { return None };
+        let walls = self.instance(leaf).field.walls();
+        let op = Op::And.flip_if(self.root.negated());
+        (!walls.is_empty()).then(|| (op, walls.into_iter().map(|wall| self.of_simpler(leaf, wall)).collect()))
+    }
+
+    /// How many there are of all leaves, those that have none counted as one.
+    pub(super) fn wall_count(&self) -> usize {
+        let leaves = self.nodes.iter().filter_map(Node::valued_by);
+        leaves.map(|leaf| self.instance(leaf).field.walls().len().max(1)).sum()
+    }
+
     /// A program of the nodes that `root` reaches.
     pub(super) fn trimmed(&self, nodes: Vec<Node>, operands: Vec<Edge>, simpler: Vec<Instance>, root: Edge) -> Program {
         if nodes.len() == 1 {

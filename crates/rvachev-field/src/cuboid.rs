@@ -1,8 +1,10 @@
 //! Box (cuboid).
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use super::{Field, ParamError, check, leaf::falling_range, rfunction::DistanceAnd};
+use super::{AnyField, Field, ParamError, Slab, check, leaf::falling_range, rfunction::DistanceAnd};
 use crate::{Bounds, Dual, Interval, Real};
 
 /// A box about the origin with edges along the axes, by true distance (1-Lipschitz).
@@ -53,6 +55,11 @@ impl Field for Cuboid {
         self.within(p).into()
     }
 
+    fn walls(&self) -> Vec<Arc<dyn AnyField>> {
+        let slab = |axis: usize| Slab { normal: DVec3::AXES[axis], thickness: self.size[axis] };
+        (0..3).map(|axis| Arc::new(slab(axis)) as Arc<dyn AnyField>).collect()
+    }
+
     fn bounds(&self) -> Bounds {
         Bounds::new(-0.5 * self.size, 0.5 * self.size)
     }
@@ -71,7 +78,7 @@ impl Field for Cuboid {
 
     fn eroded(&self, depth: f64) -> Option<Cuboid> {
         let left = Cuboid { size: self.size - 2.0 * depth };
-        left.check().is_ok().then_some(left)
+        Field::check(&left).is_ok().then_some(left)
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {

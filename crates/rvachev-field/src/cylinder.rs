@@ -1,8 +1,11 @@
 //! Circular cylinder.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use super::{Field, ParamError, check, leaf::falling_range, rfunction::DistanceAnd};
+use super::check::LARGEST_LENGTH;
+use super::{AnyField, Field, ParamError, Slab, check, leaf::falling_range, rfunction::DistanceAnd};
 use crate::{Bounds, Dual, Euclid, Interval, Real};
 
 /// A cylinder about the z axis, centred at the origin, by true distance (1-Lipschitz).
@@ -55,6 +58,15 @@ impl Field for Cylinder {
         self.within(p).into()
     }
 
+    fn walls(&self) -> Vec<Arc<dyn AnyField>> {
+        // The longest has no ends that count.
+        if self.height >= LARGEST_LENGTH {
+            return Vec::new();
+        }
+        let side = Cylinder { height: LARGEST_LENGTH, ..*self };
+        vec![Arc::new(side), Arc::new(Slab { normal: DVec3::Z, thickness: self.height })]
+    }
+
     fn bounds(&self) -> Bounds {
         let half = DVec3::new(self.radius, self.radius, 0.5 * self.height);
         Bounds::new(-half, half)
@@ -75,7 +87,7 @@ impl Field for Cylinder {
 
     fn eroded(&self, depth: f64) -> Option<Cylinder> {
         let left = Cylinder { radius: self.radius - depth, height: self.height - 2.0 * depth };
-        left.check().is_ok().then_some(left)
+        Field::check(&left).is_ok().then_some(left)
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {

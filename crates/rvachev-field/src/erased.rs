@@ -102,6 +102,12 @@ pub trait AnyField: Any + Debug + Send + Sync {
         vec![self.dual_range(p)]
     }
 
+    /// Leaves without edges of their own whose intersection has the inside of this one; none where
+    /// it is one itself.
+    fn walls(&self) -> Vec<Arc<dyn AnyField>> {
+        Vec::new()
+    }
+
     /// The value at a point of the leaf's frame.
     fn value(&self, p: [f64; 3]) -> f64;
     /// Value and derivatives at a point.
@@ -379,6 +385,10 @@ impl<F: Field> AnyField for F {
 
     fn faces(&self, p: [Dual<Interval>; 3]) -> Vec<Dual<Interval>> {
         Field::faces(self, p)
+    }
+
+    fn walls(&self) -> Vec<Arc<dyn AnyField>> {
+        Field::walls(self)
     }
 
     fn jet(&self, p: [Jet; 3]) -> Jet {

@@ -60,6 +60,12 @@ impl RegularPolygon {
         }
     }
 
+    /// The unit normals of its edges.
+    pub(super) fn normals(&self) -> impl Iterator<Item = DVec2> + use<> {
+        let step = std::f64::consts::TAU / f64::from(self.sides);
+        (0..self.sides).map(move |edge| DVec2::from_angle((f64::from(edge) + 0.5) * step))
+    }
+
     pub(super) fn check(&self) -> Result<(), ParamError> {
         check::within("sides", f64::from(self.sides), 3.0, f64::from(RegularPolygon::MOST_SIDES))?;
         check::length("radius", self.radius)

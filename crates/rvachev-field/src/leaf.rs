@@ -1,12 +1,13 @@
 //! The trait of leaves.
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
 use super::erased::reach;
 use super::outlined::Outlined;
-use super::{Along, ParamError, Segment};
+use super::{Along, AnyField, ParamError, Segment};
 use crate::{Bounds, Dual, Interval, Jet, Real};
 use rvachev_num::{Cancelled, Run};
 
@@ -170,6 +171,13 @@ pub trait Field: Debug + Send + Sync + 'static {
         vec![self.dual_range(p)]
     }
 
+    /// Leaves without edges of their own whose intersection has the inside of this one, as a box is
+    /// one of three slabs: chamfers go from each of them to whatever it meets, and end where another
+    /// one does. There are none by default: where normals turn about an edge, so does the chamfer.
+    fn walls(&self) -> Vec<Arc<dyn AnyField>> {
+        Vec::new()
+    }
+
     /// Ranges of the value, of its derivatives and of theirs, over a box whose sides are given with
     /// derivatives of their own: how much normals turn in it, which chamfers between leaves ask.
     /// The default runs the formula on these numbers.
@@ -318,4 +326,35 @@ pub(super) fn falling_range(leaf: &impl Field, region: [Interval; 3]) -> Interva
     let lo = far - size(x.hi(), y.hi(), z.hi(), far);
     let hi = near + size(x.lo(), y.lo(), z.lo(), near);
     if lo <= hi { Interval::new(lo, hi) } else { Interval::ALL }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Cuboid, Cylinder, Prism, Pyramid, Wedge};
+
+    #[test]
+    fn walls_have_the_inside_of_their_leaf_and_no_walls_themselves() {
+        let leaves: [Arc<dyn AnyField>; 6] = [
+            Arc::new(Cuboid { size: DVec3::new(3.0, 2.0, 1.0) }),
+            Arc::new(Cylinder { radius: 1.0, height: 1.5 }),
+            Arc::new(Prism::new(5, 1.2, 1.4)),
+            Arc::new(Pyramid::new(3, 1.3, 2.0)),
+            Arc::new(Pyramid::new(6, 1.3, 2.0)),
+            Arc::new(Wedge { size: DVec3::new(2.5, 1.5, 2.0) }),
+        ];
+        let place = |n: u32, prime: u32| 4.0 * (f64::from(n.wrapping_mul(prime) % 1000) / 1000.0 - 0.5);
+        for leaf in leaves {
+            let walls = leaf.walls();
+            assert!(walls.len() > 1 && walls.iter().all(|wall| wall.walls().is_empty()), "{leaf:?}");
+            let mut inside = 0;
+            for n in 0..2000 {
+                let p = [place(n, 7919), place(n, 104_729), place(n, 1_299_709)];
+                let least = walls.iter().map(|wall| wall.value(p)).fold(f64::INFINITY, f64::min);
+                assert!((least >= 0.0) == (leaf.value(p) >= 0.0) || least.abs() < 1e-9, "{leaf:?}: {least} at {p:?}");
+                inside += u32::from(least > 0.0);
+            }
+            assert!(inside > 40, "{leaf:?}: {inside}");
+        }
+    }
 }

@@ -1,9 +1,11 @@
 //! Regular prism.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::kaleidoscope::RegularPolygon;
-use super::{Field, ParamError, check, slope::lipschitz_range};
+use super::{AnyField, Field, HalfSpace, ParamError, Slab, check, slope::lipschitz_range};
 use crate::{Bounds, Euclid, Interval, Real};
 
 /// A prism on a regular polygon, along the z axis and centred at the origin, with a corner on
@@ -93,6 +95,12 @@ impl Field for Prism {
         -(outside + side.max(cap).min(zero))
     }
 
+    fn walls(&self) -> Vec<Arc<dyn AnyField>> {
+        let side = |normal: DVec3| Arc::new(HalfSpace { normal, offset: self.inscribed_radius() }) as Arc<dyn AnyField>;
+        let caps = Arc::new(Slab { normal: DVec3::Z, thickness: self.height });
+        self.base.normals().map(|n| side(n.extend(0.0))).chain([caps as Arc<dyn AnyField>]).collect()
+    }
+
     fn bounds(&self) -> Bounds {
         let [min, max] = self.base.corners(0.5 * self.height);
         Bounds::new(min, max)
@@ -117,7 +125,7 @@ impl Field for Prism {
             self.radius() * (1.0 - depth / self.inscribed_radius()),
             self.height - 2.0 * depth,
         );
-        left.check().is_ok().then_some(left)
+        Field::check(&left).is_ok().then_some(left)
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {

@@ -1,9 +1,11 @@
 //! Regular pyramid.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::kaleidoscope::RegularPolygon;
-use super::{Field, ParamError, check, slope::lipschitz_range};
+use super::{AnyField, Field, HalfSpace, ParamError, check, slope::lipschitz_range};
 use crate::{Bounds, Euclid, Interval, Real};
 
 /// A pyramid on a regular polygon, along the z axis and centred at the origin (base at
@@ -93,6 +95,17 @@ impl Field for Pyramid {
         let to_base = side.max(zero).nested_as(past.max(zero), floor, Euclid, Euclid);
         let inside = -off.max(floor);
         inside.select(inside, -to_face.min(to_base))
+    }
+
+    fn walls(&self) -> Vec<Arc<dyn AnyField>> {
+        let RegularPolygon { inscribed, .. } = self.base;
+        let wall = |normal: DVec3, through: DVec3| -> Arc<dyn AnyField> {
+            let normal = normal.normalize();
+            Arc::new(HalfSpace { normal, offset: normal.dot(through) })
+        };
+        let apex = 0.5 * self.height * DVec3::Z;
+        let faces = self.base.normals().map(|n| wall((self.height * n).extend(inscribed), apex));
+        faces.chain([wall(-DVec3::Z, -apex)]).collect()
     }
 
     fn bounds(&self) -> Bounds {

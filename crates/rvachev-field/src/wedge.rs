@@ -1,8 +1,10 @@
 //! Wedge: half a box.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use super::{Field, ParamError, check, slope::lipschitz_range};
+use super::{AnyField, Field, HalfSpace, ParamError, Slab, check, slope::lipschitz_range};
 use crate::{Bounds, Euclid, Interval, Real};
 
 /// A ramp: the half of a box about the origin that lies below the plane through two of its
@@ -63,6 +65,14 @@ impl Field for Wedge {
         let inside = -deepest.max(flank);
         let out = deepest.select(nearest, zero).norm_as(flank.max(zero), Euclid);
         inside.select(inside, -out)
+    }
+
+    fn walls(&self) -> Vec<Arc<dyn AnyField>> {
+        let half = 0.5 * self.size;
+        let wall = |normal: DVec3, offset: f64| -> Arc<dyn AnyField> { Arc::new(HalfSpace { normal, offset }) };
+        let ramp = wall(DVec3::new(half.z, 0.0, half.x).normalize(), 0.0);
+        let flanks = Arc::new(Slab { normal: DVec3::Y, thickness: self.size.y });
+        vec![ramp, wall(-DVec3::X, half.x), wall(-DVec3::Z, half.z), flanks]
     }
 
     fn bounds(&self) -> Bounds {

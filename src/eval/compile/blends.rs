@@ -29,6 +29,9 @@ struct Faces {
     signs: [f64; 2],
     chamfer: Chamfer,
     bounds: Bounds,
+    near_joint: Zone,
+    /// Whether leaves have a face for each of their walls.
+    has_walls: bool,
 }
 
 impl Compiler<'_> {
@@ -133,11 +136,13 @@ impl Compiler<'_> {
         let frame = self.contexts.get(site.context).frame;
         let near = Near::of(operation, *blend, operands);
         let Some(bounds) = near.boxes.first().copied() else { return Ok(Vec::new()) };
-        let faces = Faces { signs, chamfer, bounds };
         // Of many operands' parts only those that count near the joint have faces.
-        let asked = Zone::of_bounds(&bounds.inflate(leg));
-        let pair = [&a.surface, &b.surface].map(|operand| operand.reduced(&asked));
-        let is_few = pair[0].leaf_count() * pair[1].leaf_count() <= FACES;
+        let near_joint = Zone::of_bounds(&bounds.inflate(leg));
+        let pair = [&a.surface, &b.surface].map(|operand| operand.reduced(&near_joint));
+        let are_few = |count: fn(&Program) -> usize| count(&pair[0]) * count(&pair[1]) <= FACES;
+        let has_walls = are_few(Program::wall_count);
+        let faces = Faces { signs, chamfer, bounds, near_joint, has_walls };
+        let is_few = are_few(Program::leaf_count);
         let bevel = if is_few { self.faces(site, &faces, pair) } else { self.face(site, &faces, pair) };
         let ball =
             Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
@@ -152,11 +157,22 @@ impl Compiler<'_> {
     /// goes by the part that is nearest, and jumps where another one is. Fillets of operands have
     /// none: beyond their joints their values are no distances.
     fn faces(&mut self, site: Site<'_>, of: &Faces, pair: [Program; 2]) -> Built {
-        let choices = |side: usize| pair[side].choices().map(|(op, parts)| (side, op, parts));
-        let Some((side, op, parts)) = choices(0).or_else(|| choices(1)) else {
+        let choices = |side: usize| {
+            let walls = || pair[side].walls().filter(|_| of.has_walls);
+            pair[side].choices().or_else(walls).map(|(op, parts)| (side, op, parts))
+        };
+        let Some((side, op, mut parts)) = choices(0).or_else(|| choices(1)) else {
             return self.face(site, of, pair);
         };
         let is_union = op.flip_if(of.signs[side] < 0.0) == Op::Or;
+        // Walls that all of the joint is within bound no face.
+        if parts.len() > 1 && op == Op::And {
+            let is_near = |part: &Program| part.range_zone(&of.near_joint).lo() <= of.chamfer.reach();
+            let near: Vec<Program> = parts.iter().filter(|part| is_near(part)).cloned().collect();
+            if !near.is_empty() {
+                parts = near;
+            }
+        }
         let is_leaf = parts.iter().any(|part| !part.is_rolled_leaf());
         let faces: Vec<Built> = (parts.into_iter())
             .filter(|part| !is_leaf || !part.is_rolled_leaf())

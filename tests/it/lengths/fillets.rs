@@ -397,6 +397,26 @@ fn chamfers_are_left_out_beyond_their_legs() -> Outcome {
     Ok(())
 }
 
+/// The faces of two sides of an operand meet in a mitre beyond its edge. By one distance for both
+/// the face turned about the edge, and stood on it as a fin that could not be measured.
+#[test]
+fn chamfers_meet_in_mitres_at_edges_of_their_operands() -> Outcome {
+    let chamfer = Blend::Chamfer { leg: 0.12 };
+    let rib = Solid::cuboid([1.8, 0.4, 1.4]).rotate_z(rad(0.3)).translate([0.0, 0.0, 0.7]);
+    let post = Solid::cylinder(0.3, 3.0).translate([0.2, 0.1, 0.3]);
+    let solids = [
+        Solid::sphere(1.0).union_with(&rib, chamfer),
+        Solid::pyramid(4, 1.5, 2.0).difference_with(&post, chamfer),
+        Solid::wedge([2.0, 1.5, 1.6]).difference_with(&post, chamfer),
+        Solid::prism(5, 1.0, 1.5).union_with(rib.rotate_x(rad(0.4)), chamfer),
+    ];
+    for (number, solid) in solids.into_iter().enumerate() {
+        let told = solid.offset(0.06).accuracy()?;
+        assert!(told.error < 6.0 * told.tolerance, "{number}: {told:?}");
+    }
+    Ok(())
+}
+
 /// The parts of an operand have faces that meet in a mitre: where the nearest part changes, the
 /// surface has no step.
 #[test]
