@@ -194,10 +194,10 @@
 //!
 //! [`Blend::Chamfer`] has a flat face in place of the round one. It begins at the leg from the edge
 //! along either operand. It stays within the closing by a ball of 16 legs, so that it does not rise
-//! above flush faces either. Where an edge of an operand ends in the joint, as those of a rib do, the
-//! faces of its two sides meet in a mitre. How exact its legs are on round operands is said at [`Blend`]. Along a
-//! fillet that an operand has itself the face is narrower: its legs are taken from what the fillet
-//! is between.
+//! above flush faces either. Where an edge of an operand ends in the joint, as those of a rib do,
+//! the faces of its two sides meet in a mitre. How exact its legs are on round operands is said at
+//! [`Blend`]. Along a fillet or chamfer that an operand has itself the face is narrower: its legs are
+//! taken from what that is between.
 //!
 //! ```
 //! use rvachev::{Blend, Solid};

@@ -220,6 +220,12 @@ impl Program {
         self.nodes.iter().filter_map(Node::valued_by).all(|leaf| self.instance(leaf).field.cost() > 1)
     }
 
+    /// Whether it is what a chamfer adds.
+    pub(crate) fn is_chamfer(&self) -> bool {
+        let mut leaves = self.nodes.iter().filter_map(Node::valued_by).map(|leaf| self.instance(leaf));
+        self.is_dear() && leaves.any(|leaf| leaf.field.name() == "chamfer")
+    }
+
     /// Whether any of its leaves goes on in another one, or is seen through what may tear it.
     pub(crate) fn jumps(&self) -> bool {
         let is_torn = |mut frame: u32| {

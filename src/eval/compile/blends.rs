@@ -154,8 +154,8 @@ impl Compiler<'_> {
     }
 
     /// The faces between all parts of two operands, joined as these are. That of a union by itself
-    /// goes by the part that is nearest, and jumps where another one is. Fillets of operands have
-    /// none: beyond their joints their values are no distances.
+    /// goes by the part that is nearest, and jumps where another one is. Fillets and chamfers of
+    /// operands have none: beyond their joints their values are no distances.
     fn faces(&mut self, site: Site<'_>, of: &Faces, pair: [Program; 2]) -> Built {
         let choices = |side: usize| {
             let walls = || pair[side].walls().filter(|_| of.has_walls);
@@ -173,9 +173,10 @@ impl Compiler<'_> {
                 parts = near;
             }
         }
-        let is_leaf = parts.iter().any(|part| !part.is_rolled_leaf());
+        let is_blend = |part: &Program| part.is_rolled_leaf() || part.is_chamfer();
+        let has_others = parts.iter().any(|part| !is_blend(part));
         let faces: Vec<Built> = (parts.into_iter())
-            .filter(|part| !is_leaf || !part.is_rolled_leaf())
+            .filter(|part| !has_others || !is_blend(part))
             .map(|part| {
                 let mut pair = pair.clone();
                 pair[side] = part;

@@ -417,6 +417,19 @@ fn chamfers_meet_in_mitres_at_edges_of_their_operands() -> Outcome {
     Ok(())
 }
 
+/// Beside a chamfered post another one is put: each face of a face would take as long again, and
+/// there are nine of them.
+#[test]
+fn chamfers_of_chamfered_operands_are_quick() -> Outcome {
+    let chamfer = |leg: f64| Blend::Chamfer { leg };
+    let post = Solid::cuboid([8.0, 6.0, 8.0]).translate([0.0, 0.0, 4.0]);
+    let first = Solid::cuboid([20.0, 20.0, 3.0]).union_with(post, chamfer(1.5));
+    let both = first.union_with(Solid::cylinder(2.0, 10.0).translate([7.0, 6.0, 4.0]), chamfer(1.0));
+    assert!(both.surface_program()?.leaf_count() < 60);
+    assert!(both.contains([9.3, 6.0, 1.95])? && !both.contains([9.5, 6.0, 2.2])?);
+    Ok(())
+}
+
 /// The parts of an operand have faces that meet in a mitre: where the nearest part changes, the
 /// surface has no step.
 #[test]
