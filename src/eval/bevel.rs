@@ -1,13 +1,13 @@
 //! The face of a chamfer as a leaf: positive where it adds material to a union.
 //!
 //! ```text
-//!     min(max(T, x, y), x + l', y + l')   T = 0 the plane across the edge, x and y the operands' values
-//!
+//!     min(max(T, x, y), x + l', y + l')     T = 0 the plane across the edge,
+//!                                           x and y the operands' values
 //! ```
 //!
-//! The faces of an operand's parts are joined as these are, and so are those of a leaf's walls. In an
-//! intersection of walls A and B, (A | b) & (B | b) with their faces, each holds what A or B does: so
-//! beside A the face of B takes nothing away, and beyond both the two meet in a mitre.
+//! The faces of an operand's parts are joined as these are, and so are those of a leaf's walls. Of
+//! walls A and B that is (A | b) & (B | b), each with its face. A face holds its own operands, so
+//! that of B takes nothing away beside A. Beyond both walls the two faces meet in a mitre.
 //!
 //! T is told by the operands' values and slopes ([`Chamfer`]). It is negative where an operand is
 //! farther away than the leg, which the last two terms say as well, and over whole boxes.

@@ -50,8 +50,9 @@ use crate::{Euclid, NormKind, Real};
 /// the edge, as on caps; elsewhere on round operands they are right to 2 % up to a twelfth of the
 /// radius and to 7 % up to a quarter. Where an operand has an edge of its own across the joined
 /// one, it goes round it in a mitre: the parts of unions, intersections and differences by min and
-/// max have a face each, joined as they are, up to 64 pairs of parts near the joint. Operands with a
-/// gap narrower than 0.28 of the leg are bridged.
+/// max have a face each, and so have the sides of boxes, cylinders, prisms, pyramids and wedges,
+/// joined as they are, up to 64 pairs of them near the joint. Fillets and chamfers of operands have
+/// none. Operands with a gap narrower than 0.28 of the leg are bridged.
 ///
 /// A smooth blend adds wherever the operands' values differ by less than its radius. On flush faces
 /// both values are the same, so that a union rises above them, by up to a quarter of the radius,

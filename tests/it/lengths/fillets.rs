@@ -417,16 +417,33 @@ fn chamfers_meet_in_mitres_at_edges_of_their_operands() -> Outcome {
     Ok(())
 }
 
-/// Beside a chamfered post another one is put: each face of a face would take as long again, and
-/// there are nine of them.
+/// Sides of a plate that are far from a post have no faces. Beside a chamfered post another one is
+/// put: each face of a face would take as long again.
 #[test]
 fn chamfers_of_chamfered_operands_are_quick() -> Outcome {
     let chamfer = |leg: f64| Blend::Chamfer { leg };
     let post = Solid::cuboid([8.0, 6.0, 8.0]).translate([0.0, 0.0, 4.0]);
-    let first = Solid::cuboid([20.0, 20.0, 3.0]).union_with(post, chamfer(1.5));
+    let first = Solid::cuboid([60.0, 60.0, 3.0]).union_with(post, chamfer(1.5));
     let both = first.union_with(Solid::cylinder(2.0, 10.0).translate([7.0, 6.0, 4.0]), chamfer(1.0));
-    assert!(both.surface_program()?.leaf_count() < 60);
+    let [few, more] = [first.surface_program()?.leaf_count(), both.surface_program()?.leaf_count()];
+    assert!(few < 8 && more < 20, "{few}, {more}");
     assert!(both.contains([9.3, 6.0, 1.95])? && !both.contains([9.5, 6.0, 2.2])?);
+    Ok(())
+}
+
+/// The face beside a low boss is as high as its leg, or as the boss, though the boss's upper face
+/// and the plate's are parallel, and nothing is filled between such.
+#[test]
+fn chamfers_beside_low_bosses_have_their_leg() -> Outcome {
+    let plate = Solid::cuboid([20.0, 20.0, 2.0]);
+    for boss in [
+        Solid::cuboid([8.0, 8.0, 3.5]),
+        Solid::cylinder(4.0, 3.5),
+        Solid::prism(6, 8.0 / 3f64.sqrt(), 3.5).rotate_z(rad(PI / 6.0)),
+    ] {
+        let solid = plate.union_with(boss.translate([0.0, 0.0, 0.75]), Blend::Chamfer { leg: 1.0 });
+        assert!(solid.contains([4.05, 0.0, 1.9])? && !solid.contains([4.15, 0.0, 1.95])?, "{solid}");
+    }
     Ok(())
 }
 
