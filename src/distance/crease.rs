@@ -28,6 +28,22 @@ impl Plane {
         let normal = slope.normal();
         (normal != DVec3::ZERO).then(|| Plane { normal, d: normal.dot(at + slope.newton()) })
     }
+
+    fn is_like(&self, other: &Plane) -> bool {
+        self.normal.distance(other.normal) < CREASE
+    }
+}
+
+/// Planes that were seen now, and of those before them the other face's, if all are of one: beside a
+/// crease whose sides are not looked at from near enough only the greater of both values is seen,
+/// on both sides. One face after the other, each alone, leads to the crease slowly or not at all.
+pub(super) fn with_known(mut seen: Vec<Plane>, known: &[Plane]) -> Vec<Plane> {
+    if let [first, ..] = seen[..]
+        && seen.iter().all(|own| own.is_like(&first))
+    {
+        seen.extend(known.iter().filter(|own| !own.is_like(&first)));
+    }
+    seen
 }
 
 /// The point near `from` where planes meet.

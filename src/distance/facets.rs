@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rvachev_num::order;
 
-use super::crease::{Plane, meet};
-use super::seam::SETTLED;
+use super::crease::{Plane, meet, with_known};
+use super::seam::{SETTLED, STEPS};
 use crate::error::MeshingError;
 use crate::eval::Program;
 use crate::mesh::{Slopes, Subject};
@@ -121,7 +121,7 @@ impl Facets {
         // Nothing is asked of points without triangles.
         let mut open: Vec<usize> = (0..start.len()).filter(|at| !creased[*at] && limits[*at] > 0.0).collect();
         let mut normals = vec![DVec3::ZERO; start.len()];
-        for _ in 0..2 {
+        for _ in 0..STEPS {
             let points: Vec<DVec3> = open.iter().map(|at| self.positions[*at]).collect();
             let mut found = slopes.at(&points, run)?.into_iter();
             open.retain(|&at| {
@@ -154,6 +154,7 @@ impl Facets {
         let mut order: Vec<usize> = (0..corners.len()).collect();
         let vertices: Vec<usize> = corners.iter().map(|(t, k)| self.triangles[*t][*k] as usize).collect();
         order::rising(&mut order, |n| vertices[*n] as f64);
+        let mut known: Vec<Vec<Plane>> = vec![Vec::new(); self.positions.len()];
         for aside in ASIDE {
             let beside = |&(t, k): &(usize, usize)| {
                 let triangle = self.triangles[t].map(|v| self.positions[v as usize]);
@@ -174,8 +175,9 @@ impl Facets {
                 if !tells(at) {
                     continue;
                 }
-                let planes: Vec<Plane> = group.iter().filter_map(|n| Plane::of(points[*n], &found[*n])).collect();
-                self.positions[at] = held(at, meet(&planes, self.positions[at]));
+                let seen = group.iter().filter_map(|n| Plane::of(points[*n], &found[*n])).collect();
+                known[at] = with_known(seen, &known[at]);
+                self.positions[at] = held(at, meet(&known[at], self.positions[at]));
             }
         }
         Ok(())

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::crease::{Plane, meet};
+use super::crease::{Plane, meet, with_known};
 use super::facets::CREASE;
 use super::piece::Piece;
 use crate::mesh::Slopes;
@@ -31,6 +31,10 @@ const STRIDE: f64 = 0.3;
 
 /// A step that is shorter than this part of what values may be off is the last one.
 pub(super) const SETTLED: f64 = 0.3;
+
+/// So many steps lead onto the surface at most; most settle after one or two. In a corner that is
+/// hollow they go from one face to the other, each time nearer to where they meet.
+pub(super) const STEPS: usize = 8;
 
 /// No side.
 const NONE: u32 = u32::MAX;
@@ -169,10 +173,12 @@ impl Seams {
     ) -> Result<(), Cancelled> {
         let ends = |seams: &Seams, n: u32| seams.list[n as usize].ends.map(|v| positions[v as usize]);
         let mut at: Vec<DVec3> = Vec::with_capacity(asked.len());
+        let mut known: Vec<Vec<Plane>> = Vec::with_capacity(asked.len());
         for (number, normals) in asked {
             let [a, b] = ends(self, *number);
             let planes = [(a, normals[0]), (b, normals[1])].map(|(p, normal)| Plane { normal, d: normal.dot(p) });
             at.push(held(meet(&planes, 0.5 * (a + b)), [a, b]));
+            known.push(planes.into());
         }
         let mut normals = vec![[DVec3::ZERO; 2]; asked.len()];
         for aside in ASIDE {
@@ -181,15 +187,13 @@ impl Seams {
             };
             let points: Vec<DVec3> = asked.iter().zip(&at).flat_map(beside).collect();
             let found = slopes.at(&points, run)?;
-            for (i, (number, _)) in asked.iter().enumerate() {
-                let pair = 2 * i..2 * i + 2;
-                let planes: Vec<Plane> = points[pair.clone()]
-                    .iter()
-                    .zip(&found[pair.clone()])
-                    .filter_map(|(p, s)| Plane::of(*p, s))
-                    .collect();
-                at[i] = held(meet(&planes, at[i]), ends(self, *number));
-                normals[i] = [found[2 * i].normal(), found[2 * i + 1].normal()];
+            for (i, ((number, _), (points, found))) in
+                asked.iter().zip(points.chunks(2).zip(found.chunks(2))).enumerate()
+            {
+                let seen = points.iter().zip(found).filter_map(|(p, s)| Plane::of(*p, s)).collect();
+                known[i] = with_known(seen, &known[i]);
+                at[i] = held(meet(&known[i], at[i]), ends(self, *number));
+                normals[i] = [found[0].normal(), found[1].normal()];
             }
         }
         for (((number, at_ends), at), near) in asked.iter().zip(at).zip(normals) {
@@ -276,7 +280,7 @@ impl Seams {
     ) -> Result<Vec<usize>, Cancelled> {
         let before: Vec<DVec3> = numbers.iter().map(|n| self.list[*n].middle).collect();
         let mut open = numbers.to_vec();
-        for _ in 0..2 {
+        for _ in 0..STEPS {
             let points: Vec<DVec3> = open.iter().map(|n| self.list[*n].middle).collect();
             let mut found = slopes.at(&points, run)?.into_iter();
             open.retain(|number| {
@@ -322,25 +326,22 @@ impl Seams {
         slopes: &Slopes<'_>,
         run: &Run,
     ) -> Result<(), Cancelled> {
+        let mut known: Vec<Vec<Plane>> = vec![Vec::new(); numbers.len()];
         for aside in NEAR {
-            let tells = |n: &usize| aside >= self.list[*n].nearest(slopes, positions);
-            let numbers: Vec<usize> = numbers.iter().copied().filter(tells).collect();
-            let beside = |n: &usize| {
-                let seam = &self.list[*n];
+            let tells = |i: &usize| aside >= self.list[numbers[*i]].nearest(slopes, positions);
+            let asked: Vec<usize> = (0..numbers.len()).filter(tells).collect();
+            let beside = |i: &usize| {
+                let seam = &self.list[numbers[*i]];
                 seam.beside(seam.middle, aside, positions)
             };
-            let points: Vec<DVec3> = numbers.iter().flat_map(beside).collect();
+            let points: Vec<DVec3> = asked.iter().flat_map(beside).collect();
             let found = slopes.at(&points, run)?;
-            for (i, number) in numbers.iter().enumerate() {
-                let pair = 2 * i..2 * i + 2;
-                let planes: Vec<Plane> = points[pair.clone()]
-                    .iter()
-                    .zip(&found[pair.clone()])
-                    .filter_map(|(p, s)| Plane::of(*p, s))
-                    .collect();
-                let seam = &mut self.list[*number];
-                seam.moved(meet(&planes, seam.middle), positions);
-                seam.normals = [found[2 * i].normal(), found[2 * i + 1].normal()];
+            for ((i, points), found) in asked.iter().zip(points.chunks(2)).zip(found.chunks(2)) {
+                let seen = points.iter().zip(found).filter_map(|(p, s)| Plane::of(*p, s)).collect();
+                known[*i] = with_known(seen, &known[*i]);
+                let seam = &mut self.list[numbers[*i]];
+                seam.moved(meet(&known[*i], seam.middle), positions);
+                seam.normals = [found[0].normal(), found[1].normal()];
             }
         }
         Ok(())

@@ -41,12 +41,8 @@ const CELLS: f64 = 4e4;
 const CELLS_A_LEAF: f64 = 500.0;
 
 /// Cells are halved while more than this part of the surface is off, or a patch by [`GROSS`]
-/// tolerances and by [`OF_CELL`].
+/// tolerances.
 pub(super) const FEW: f64 = 5e-4;
-
-/// What is off by less than this part of a cell is so for other reasons: boxes about spots have been
-/// meshed in cells as small.
-const OF_CELL: f64 = 0.06;
 
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;
@@ -156,8 +152,7 @@ impl DistanceSource for FromMeshes {
                 run.report(1.0);
                 return Ok(found);
             }
-            let gross = (GROSS * tolerance).max(OF_CELL * cell);
-            let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= gross;
+            let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= GROSS * tolerance;
             let mut is_enough = false;
             if let Some(mut quilt) = Quilt::new(facets, &slopes, care, &to_sew)? {
                 mend(&mut quilt, &slopes, cell, tolerance, &to_sew)?;

@@ -5,6 +5,7 @@
 
 mod closed;
 mod fillets;
+mod hollow;
 mod laws;
 mod local;
 mod nested;
