@@ -46,6 +46,13 @@ pub(super) fn with_known(mut seen: Vec<Plane>, known: &[Plane]) -> Vec<Plane> {
     seen
 }
 
+/// A step onto the surface from a point with a slope, the planes of earlier ones being known. Beside
+/// a hollow edge these lead from one face to the other and back, so it goes to where both meet.
+pub(super) fn slide(from: DVec3, slope: &Slope, known: &mut Vec<Plane>) -> DVec3 {
+    *known = with_known(Plane::of(from, slope).into_iter().collect(), known);
+    if known.len() > 1 { meet(known, from) } else { from + slope.newton() }
+}
+
 /// The point near `from` where planes meet.
 pub(super) fn meet(planes: &[Plane], from: DVec3) -> DVec3 {
     let sides = sides(planes);

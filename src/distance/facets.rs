@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rvachev_num::order;
 
-use super::crease::{Plane, meet, with_known};
+use super::crease::{Plane, meet, slide, with_known};
 use super::seam::{SETTLED, STEPS};
 use crate::error::MeshingError;
 use crate::eval::Program;
@@ -119,14 +119,15 @@ impl Facets {
         let limits = self.shortest_sides();
         let held = |at: usize, to: DVec3| start[at] + (to - start[at]).clamp_length_max(STRIDE * limits[at]);
         // Nothing is asked of points without triangles.
-        let mut open: Vec<usize> = (0..start.len()).filter(|at| !creased[*at] && limits[*at] > 0.0).collect();
+        let asked = (0..start.len()).filter(|at| !creased[*at] && limits[*at] > 0.0);
+        let mut open: Vec<(usize, Vec<Plane>)> = asked.map(|at| (at, Vec::new())).collect();
         let mut normals = vec![DVec3::ZERO; start.len()];
         for _ in 0..STEPS {
-            let points: Vec<DVec3> = open.iter().map(|at| self.positions[*at]).collect();
+            let points: Vec<DVec3> = open.iter().map(|(at, _)| self.positions[*at]).collect();
             let mut found = slopes.at(&points, run)?.into_iter();
-            open.retain(|&at| {
-                let slope = found.next().unwrap_or_default();
-                self.positions[at] = held(at, self.positions[at] + slope.newton());
+            open.retain_mut(|(at, known)| {
+                let (at, slope) = (*at, found.next().unwrap_or_default());
+                self.positions[at] = held(at, slide(self.positions[at], &slope, known));
                 normals[at] = slope.normal();
                 // What is left of a step goes with its square.
                 slope.distance() > SETTLED * slopes.precision

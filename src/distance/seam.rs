@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::crease::{Plane, meet, with_known};
+use super::crease::{Plane, meet, slide, with_known};
 use super::facets::CREASE;
 use super::piece::Piece;
 use crate::mesh::Slopes;
@@ -22,9 +22,10 @@ const NEAR: [f64; 3] = [0.05, 0.01, 0.002];
 /// A crease that is cut off passes a side this far off at most, in parts of the side's length.
 const ASTRAY: f64 = 2.0;
 
-/// Where a side along a crease is compared with the crease, in parts of its length: a curve through
-/// both ends and the middle is farthest off about there.
-const PROBES: [f64; 2] = [0.25, 0.75];
+/// Where a side is compared with the surface or with the crease that it is to follow, in parts of its
+/// length: a curve through both ends and the middle is farthest off halfway between them, and one
+/// that starts from a crease may pass over it soon after.
+const PROBES: [f64; 4] = [1.0 / 12.0, 0.25, 0.75, 11.0 / 12.0];
 
 /// The middle is moved by this part of the side's length at most.
 const STRIDE: f64 = 0.3;
@@ -32,8 +33,7 @@ const STRIDE: f64 = 0.3;
 /// A step that is shorter than this part of what values may be off is the last one.
 pub(super) const SETTLED: f64 = 0.3;
 
-/// So many steps lead onto the surface at most; most settle after one or two. In a corner that is
-/// hollow they go from one face to the other, each time nearer to where they meet.
+/// So many steps lead onto the surface at most; most settle after one or two.
 pub(super) const STEPS: usize = 8;
 
 /// No side.
@@ -279,13 +279,13 @@ impl Seams {
         run: &Run,
     ) -> Result<Vec<usize>, Cancelled> {
         let before: Vec<DVec3> = numbers.iter().map(|n| self.list[*n].middle).collect();
-        let mut open = numbers.to_vec();
+        let mut open: Vec<(usize, Vec<Plane>)> = numbers.iter().map(|n| (*n, Vec::new())).collect();
         for _ in 0..STEPS {
-            let points: Vec<DVec3> = open.iter().map(|n| self.list[*n].middle).collect();
+            let points: Vec<DVec3> = open.iter().map(|(n, _)| self.list[*n].middle).collect();
             let mut found = slopes.at(&points, run)?.into_iter();
-            open.retain(|number| {
+            open.retain_mut(|(number, known)| {
                 let (seam, slope) = (&mut self.list[*number], found.next().unwrap_or_default());
-                seam.moved(seam.middle + slope.newton(), positions);
+                seam.moved(slide(seam.middle, &slope, known), positions);
                 seam.normals = [slope.normal(); 2];
                 // What is left of a step goes with its square.
                 slope.distance() > SETTLED * slopes.precision
@@ -375,8 +375,8 @@ impl Seams {
                         meet(&planes, at).distance(at).min(STRIDE * length)
                     }
                     // Where both faces are one, nothing tells where the crease is, but that it is
-                    // on the surface.
-                    _ => found.iter().map(|slope| slope.distance_of(length)).fold(f64::INFINITY, f64::min),
+                    // on the surface: as far as both are on average.
+                    _ => found.iter().map(|slope| slope.distance_of(length)).sum::<f64>() / 2.0,
                 };
                 seam.off = seam.off.max(off);
             }
