@@ -29,6 +29,10 @@ impl Plane {
         (normal != DVec3::ZERO).then(|| Plane { normal, d: normal.dot(at + slope.newton()) })
     }
 
+    pub(super) fn distance(&self, p: DVec3) -> f64 {
+        (self.normal.dot(p) - self.d).abs()
+    }
+
     fn is_like(&self, other: &Plane) -> bool {
         self.normal.distance(other.normal) < CREASE
     }

@@ -215,7 +215,8 @@ impl Quilt {
             let mut next = Vec::new();
             for (number, ((piece, patch), error)) in pieces.into_iter().zip(patches).zip(errors).enumerate() {
                 often(number, run)?;
-                let off = error.all();
+                // Where values hardly rise they tell of much more than there can be.
+                let off = error.all().min(slopes.reach);
                 if fails(&piece, error) {
                     let from = next.len();
                     piece.split(&mut positions, &mut seams, &mut next);

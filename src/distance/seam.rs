@@ -369,14 +369,15 @@ impl Seams {
                 let seam = &mut self.list[*number];
                 let [from, to] = seam.ends.map(|v| positions[v as usize]);
                 let length = from.distance(to);
+                let at = seam.at(along, positions);
                 let off = match &planes[..] {
+                    [] => found.iter().map(|slope| slope.distance_of(length)).fold(0.0, f64::max),
                     [a, b] if a.normal.distance(b.normal) > CREASE => {
-                        let at = seam.at(along, positions);
                         meet(&planes, at).distance(at).min(STRIDE * length)
                     }
                     // Where both faces are one, nothing tells where the crease is, but that it is
-                    // on the surface: as far as both are on average.
-                    _ => found.iter().map(|slope| slope.distance_of(length)).sum::<f64>() / 2.0,
+                    // on the surface.
+                    _ => planes.iter().map(|plane| plane.distance(at)).fold(0.0, f64::max),
                 };
                 seam.off = seam.off.max(off);
             }
