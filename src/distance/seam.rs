@@ -13,10 +13,7 @@ use crate::mesh::Slopes;
 use crate::{Cancelled, Run};
 
 /// How far from a crease its sides are looked at, in parts of the side's length: from farther off
-/// first.
-const ASIDE: [f64; 2] = [0.05, 0.01];
-
-/// The same where a side is known to be along a crease: as near as values tell the faces apart.
+/// first, and as near as values tell the faces apart.
 const NEAR: [f64; 3] = [0.05, 0.01, 0.002];
 
 /// A crease that is cut off passes a side this far off at most, in parts of the side's length.
@@ -181,7 +178,7 @@ impl Seams {
             known.push(planes.into());
         }
         let mut normals = vec![[DVec3::ZERO; 2]; asked.len()];
-        for aside in ASIDE {
+        for aside in NEAR {
             let beside = |((number, _), at): (&(u32, [DVec3; 2]), &DVec3)| {
                 ends(self, *number).map(|end| at.lerp(end, 2.0 * aside))
             };
