@@ -20,9 +20,11 @@ const NEAR: [f64; 3] = [0.05, 0.01, 0.002];
 const ASTRAY: f64 = 2.0;
 
 /// Where a side is compared with the surface or with the crease that it is to follow, in parts of its
-/// length: a curve through both ends and the middle is farthest off halfway between them, and one
-/// that starts from a crease may pass over it soon after.
-const PROBES: [f64; 4] = [1.0 / 12.0, 0.25, 0.75, 11.0 / 12.0];
+/// length: a curve through both ends and the middle is farthest off about there.
+const PROBES: [f64; 2] = [0.25, 0.75];
+
+/// One that starts from a crease may pass over it soon after and come back.
+const SOON: [f64; 2] = [1.0 / 12.0, 11.0 / 12.0];
 
 /// The middle is moved by this part of the side's length at most.
 const STRIDE: f64 = 0.3;
@@ -261,7 +263,9 @@ impl Seams {
         }
         let (creases, smooth): (Vec<usize>, Vec<usize>) = fresh.partition(|n| self.list[*n].is_crease);
         let asked = self.slide(&smooth, positions, slopes, run)?;
-        self.probe(&asked, positions, slopes, run)?;
+        self.probe(&asked, PROBES, positions, slopes, run)?;
+        let by_creases: Vec<usize> = smooth.into_iter().filter(|n| self.list[*n].is_by_crease).collect();
+        self.probe(&by_creases, SOON, positions, slopes, run)?;
         self.meet(&creases, positions, slopes, run)?;
         self.compare(&creases, positions, slopes, run)
     }
@@ -300,11 +304,12 @@ impl Seams {
     fn probe(
         &mut self,
         numbers: &[usize],
+        places: [f64; 2],
         positions: &[DVec3],
         slopes: &Slopes<'_>,
         run: &Run,
     ) -> Result<(), Cancelled> {
-        for along in PROBES {
+        for along in places {
             let points: Vec<DVec3> = numbers.iter().map(|n| self.list[*n].at(along, positions)).collect();
             for (number, slope) in numbers.iter().zip(slopes.at(&points, run)?) {
                 let seam = &mut self.list[*number];
@@ -353,7 +358,7 @@ impl Seams {
         slopes: &Slopes<'_>,
         run: &Run,
     ) -> Result<(), Cancelled> {
-        for along in PROBES {
+        for along in PROBES.into_iter().chain(SOON) {
             let beside = |n: &usize| {
                 let seam = &self.list[*n];
                 let aside = seam.nearest(slopes, positions);
