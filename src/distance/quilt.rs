@@ -59,7 +59,7 @@ const TURN: f64 = 0.03;
 const GAIN: f64 = 0.8;
 
 /// Patches that are farther off than so many tolerances are to be mended.
-const FAR: f64 = 3.0;
+const FAR: f64 = 2.0;
 
 /// What is found within so many tolerances of known patches is known.
 pub(super) const KNOWN: f64 = 3.0;
