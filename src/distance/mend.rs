@@ -78,10 +78,13 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
     let mut groups: Vec<Group> = found.into_iter().flat_map(|group| parted(group, &spots, size, tolerance)).collect();
     order::falling(&mut groups, |(_, numbers)| worst(numbers));
     groups.truncate(boxes);
-    // What is within a few tolerances may stay as it is.
-    let boxes = boxes / groups.iter().filter(|(_, numbers)| worst(numbers) > GROSS * tolerance).count().max(1);
+    // What is within a few tolerances may stay as it is, so what is not has more.
+    let is_gross = |(_, numbers): &&Group| worst(numbers) > GROSS * tolerance;
+    let (all, gross) = (groups.len().max(1), groups.iter().filter(is_gross).count().max(1));
+    let share = |group: &Group| boxes / if is_gross(&group) { gross } else { all };
     let mut left = vec![true; spots.len()];
-    let mended = |(bounds, numbers): &Group, most: usize| {
+    let mended = |group: &Group, most: usize| {
+        let (bounds, numbers) = group;
         run.check()?;
         // In cells that are hardly smaller nothing would be seen that was not, and it would not end;
         // those below the tolerance tell nothing more.
@@ -91,7 +94,7 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
         }
         let care = Care { depth: SPLITS, most, ..Care::new(tolerance) };
         let Some(mut part) = anew(slopes, bounds, care, run)? else { return Ok(None) };
-        mend_of(Cells { size: cell, boxes, most }, &mut part, slopes, tolerance, run)?;
+        mend_of(Cells { size: cell, boxes: share(group), most }, &mut part, slopes, tolerance, run)?;
         let own: Vec<&Spot> = numbers.iter().map(|n| &spots[*n]).collect();
         part.keep_near(&own);
         Ok(covers(&part, &own, slopes, NEAR * cell, run)?.then_some(part))

@@ -27,7 +27,7 @@ fn cup(inner: [f64; 2]) -> Solid {
 fn what_is_thinner_than_cells_is_known_as_well_as_the_rest() -> Outcome {
     let tube = Solid::cylinder(6.0, 20.0) - Solid::cylinder(5.0, 30.0);
     let bowl = Solid::sphere(10.0) - Solid::sphere(9.0) - at(Solid::cuboid([30.0, 30.0, 10.0]), [0.0, 0.0, 6.0]);
-    let block = Solid::cuboid([6.0, 4.0, 3.0]) - at(Solid::cuboid([1.0, 5.0, 3.0]), [0.0, 0.0, 1.5]);
+    let block = Solid::cuboid([3.0, 1.5, 2.0]) - at(Solid::cuboid([1.0, 2.5, 2.0]), [0.0, 0.0, 1.0]);
     for (name, rounded) in [
         ("plates", plates().rounded(0.5)),
         ("turned plates", turned(plates()).rounded(0.5)),

@@ -253,7 +253,7 @@ fn judge(name: &str, tally: &Tally) {
 
 #[test]
 fn laws_hold_for_a_few_profiles() {
-    for ((name, law), count) in LAWS.into_iter().zip([4, 2, 1]) {
+    for ((name, law), count) in LAWS.into_iter().zip([2, 1, 1]) {
         let mut tally = Tally::default();
         // Of 109 a sliver is left that no cell of the first size shows.
         (9300..9300 + count).chain([109]).for_each(|seed| attempt(law, seed, &mut tally));
