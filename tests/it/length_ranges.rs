@@ -119,7 +119,7 @@ fn ranges_of_blends_hold_every_value_beyond_the_joint() {
             DVec3::new(-0.08250662525433894, 0.2029470499435011, 0.8473327481136552),
             DVec3::new(1.142446666235323, 0.2029470499435011, 1.574899418459152),
         );
-        let places = (0..300).map(|_| place(&mut random, &frame)).collect::<Vec<_>>();
+        let places = (0..600).map(|_| place(&mut random, &frame)).collect::<Vec<_>>();
         for place in places.into_iter().chain([held]) {
             let range = program.range(&place).inflate(1e-9 + 1e-12 * place.max.abs().max_element());
             let narrowed = program.narrow(&place);

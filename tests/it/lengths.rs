@@ -683,7 +683,7 @@ fn rods_thinner_than_cells_are_found_or_told() -> Outcome {
     let oval = |thickness: f64| Solid::superellipsoid([1.5, thickness, 0.7 * thickness], 1.0, 1.0);
     for (name, thin, body, turn) in [
         ("a rod on a body", rod(3e-4), body.clone(), DQuat::IDENTITY),
-        ("an oval rod beside it", oval(6e-3), at(body.clone(), [0.0, 0.0, 3.0]), turn),
+        ("an oval rod beside it", oval(3e-3), at(body.clone(), [0.0, 0.0, 3.0]), turn),
         ("a wall on it", Solid::cuboid([3.0, 3e-4, 1.0]), body.clone(), turn),
     ] {
         let moved = (thin | body).rotate(turn).offset(0.1);
@@ -702,7 +702,7 @@ fn holes_thinner_than_cells_are_found_or_told() -> Outcome {
     let mut random = Random::new(34);
     // Of many cells along itself, and few across.
     let bar = Solid::cuboid([20.0, 4.0, 2.0]);
-    for radius in [0.002, 0.02, 0.04, 0.056] {
+    for radius in [0.001, 0.02, 0.04, 0.056] {
         let turn = DQuat::from_axis_angle(random.direction(), 4.0 * random.unit());
         let at_edge = DVec3::new(9.9 - radius - 0.2 * random.unit(), 2.0 * random.unit() - 1.0, 0.0);
         let plate = bar.clone() - at(Solid::cylinder(radius, 4.0), at_edge.to_array());

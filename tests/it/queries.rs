@@ -595,7 +595,7 @@ fn gradients_are_slopes_of_values_and_many_values_are_those_of_one() {
         let size = frame.longest_side();
         let around = Bounds::from_center(frame.center(), 0.8 * frame.size() + 0.2 * size);
         // Corners of boxes are where creases meet.
-        let points: Vec<DVec3> = (0..40).map(|_| random.point_in(&around)).collect();
+        let points: Vec<DVec3> = (0..60).map(|_| random.point_in(&around)).collect();
         let (values, gradients) = (solid.values(&points).unwrap(), solid.gradients(&points).unwrap());
         let simple = solid.simplified();
         for ((p, many), gradient) in points.iter().zip(values).zip(gradients) {
@@ -625,7 +625,7 @@ fn gradients_are_slopes_of_values_and_many_values_are_those_of_one() {
         }
     }
     assert!(wrong.is_empty(), "{} wrong of {smooth}:\n{}", wrong.len(), wrong[..wrong.len().min(40)].join("\n"));
-    assert!(smooth > 6_700, "{smooth}");
+    assert!(smooth > 10_000, "{smooth}");
 }
 
 #[test]

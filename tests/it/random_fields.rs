@@ -208,8 +208,8 @@ fn fields(range: std::ops::Range<u64>, cell: f64, thin: ThinFeatures) {
 }
 
 #[test]
-fn two_hundred_fields() {
-    fields(0..200, CELL, ThinFeatures::Ignore);
+fn three_hundred_fields() {
+    fields(0..300, CELL, ThinFeatures::Ignore);
 }
 
 #[test]
